@@ -24,58 +24,61 @@ class BaseInterlocks {
  public:
   explicit BaseInterlocks(const BaseSettings& settings);
 
-  /// Motion commands are refused.
+  /// Whether motion commands are refused.
   [[nodiscard]] bool engaged() const {
     return ended_ || held_.emergency_stop || held_.halt || bump_latched_;
   }
-  /// The resulting state; nothing while the base may move.
+  /// The resulting state; empty while the base may move.
   [[nodiscard]] std::optional<BaseState> state() const;
 
-  /// A motion command came, accepted or not: a bump lasts as long as the commands that led to it go
-  /// on.
+  /// Records a motion command, accepted or not. A bump lasts until the commands that led to it
+  /// pause.
   void motion_commanded(std::int64_t now_ns) { last_motion_command_ns_ = now_ns; }
-  /// A motion command is accepted; clears all that a command resets.
+  /// Records an accepted motion command: clears the motor fault and the expired watchdog.
   void motion_taken();
-  /// A command to stand was accepted, which is always allowed.
+  /// Records a command of speed 0, which is always accepted: clears the bump and the expired
+  /// watchdog.
   void standing_taken();
 
   void halt() { held_.halt = true; }
-  /// The program that drives the base ends. Nothing releases this, and it is no stop that holds.
+  /// Refuses all motion from now on, because the program that drives the base ends. Nothing
+  /// releases this; it does not count as a held stop.
   void end() { ended_ = true; }
-  /// The base does not move as commanded. False if it was already stopped for that.
+  /// Records that the base does not move as commanded. Returns false if the emergency stop held
+  /// already.
   bool emergency_stop();
-  /// An operator releases halt and emergency stop.
+  /// Releases halt and emergency stop, by order of an operator.
   void release();
   [[nodiscard]] const HeldStops& held() const { return held_; }
-  /// Adds stops that an earlier process has left.
+  /// Adds stops that held when an earlier process ended.
   void hold(const HeldStops& stops);
 
-  /// The base stopped by itself while it was driven. That is no emergency stop: the state lasts
-  /// until the next command, or for kWatchdogShown_ns without one.
+  /// Records that the base stopped by itself while it was driven. This is no emergency stop: the
+  /// state lasts until the next command, or for kWatchdogShown_ns without one.
   void watchdog_expired(std::int64_t now_ns) { watchdog_until_ns_ = now_ns + kWatchdogShown_ns; }
-  /// Long enough for people to read it.
+  /// This is long enough for people to read the state.
   static constexpr std::int64_t kWatchdogShown_ns = 5'000'000'000;
-  /// Whether the base moves by joystick; true when that has begun.
+  /// Sets whether the base moves by joystick. Returns true when such a motion begins.
   bool joystick(bool moves);
-  /// Bumpers of a report or an event, 0 if pressed. True if one more is pressed than before: then
-  /// the base has to stop, because going on would push. After a pause in the commands it may move
-  /// again, for example to back off.
-  /// `linear_mps`: the motion at that moment. Going on in its direction stays refused while a
-  /// bumper is pressed, see pushes().
+  /// Records the bumpers of a report or an event; a bit is 0 while its bumper is pressed. Returns
+  /// true if a bumper is newly pressed: the base must stop, because further motion would push.
+  /// After a pause in the commands it may move again, for example to back off. `linear_mps`:
+  /// velocity at that moment. Motion in its direction stays refused while a bumper is pressed, see
+  /// pushes().
   bool bumpers(std::uint16_t active_low, double linear_mps, std::int64_t now_ns);
-  /// Motion with this velocity would push against what presses the bumper.
+  /// Whether motion with this velocity would push against the object that presses the bumper.
   [[nodiscard]] bool pushes(double linear_mps) const {
     return pressed_ != 0 && linear_mps * bump_mps_ > 0.0;
   }
-  /// A bit for each switch that is pressed.
+  /// The pressed switches, one bit each.
   [[nodiscard]] std::uint16_t pressed() const { return pressed_; }
 
-  /// Records an event that is a motor fault or clears one. True for a fault.
+  /// Records an event that reports or clears a motor fault. Returns true for a fault.
   bool motor_event(McpEventKind kind);
-  /// The motor fault, empty if there is none.
+  /// The motor fault; empty if there is none.
   [[nodiscard]] std::string_view motor_fault() const { return motor_fault_; }
 
-  /// The base does not answer, so the reasons of its stop are no longer known.
+  /// Clears watchdog, bump and motor fault, which are unknown while the base does not answer.
   void offline();
   void tick(std::int64_t now_ns);
   [[nodiscard]] std::int64_t due_ns() const;
@@ -90,7 +93,7 @@ class BaseInterlocks {
   bool bump_latched_ = false;
   bool joystick_ = false;
   std::uint16_t pressed_ = 0;
-  double bump_mps_ = 0.0;  // when the last bumper was pressed
+  double bump_mps_ = 0.0;  // velocity when the last bumper was pressed
   std::int64_t last_motion_command_ns_ = 0;
   std::string_view motor_fault_{};
 };

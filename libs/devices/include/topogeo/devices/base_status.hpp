@@ -16,11 +16,11 @@ enum class BaseState : std::uint8_t {
   kMoving,           ///< moves as commanded
   kOffline,          ///< the line is closed, the base does not answer, or end() was called
   kStarting,         ///< is being set up
-  kEmergencyStop,    ///< the motors have no power to follow a motion command; until reset_stop()
-  kHalted,           ///< by halt(); until reset_stop()
+  kEmergencyStop,    ///< the motors are without power; until reset_stop()
+  kHalted,           ///< halt() was called; until reset_stop()
   kWatchdogExpired,  ///< the base has stopped by itself; until the next motion command, at most 5 s
   kBumped,           ///< a bumper is pressed, or was and the commands that led to it go on
-  kJoystick,         ///< moves without a command
+  kJoystick,         ///< moves by its joystick, without a command
   kMotorsOff         ///< the motors are limp, or one of them has a fault
 };
 std::string_view base_state_name(BaseState state);
@@ -37,11 +37,11 @@ struct BaseStatus {
   std::optional<double> battery_percent{};  ///< [0, 100]; empty unless the base measures it
   std::uint16_t bumpers = 0;                ///< a bit for each switch that is pressed
   // Counts since the driver was made:
-  std::uint64_t reports = 0;            ///< accepted ones
+  std::uint64_t reports = 0;            ///< accepted reports
   std::uint64_t echoes = 0;             ///< lines that repeated one of our commands
   std::uint64_t checksum_warnings = 0;  ///< frames accepted in spite of their checksum
-  std::uint64_t restarts = 0;           ///< of the base, detected by its clock or registers
-  std::uint64_t starts = 0;             ///< number of setups of the base
+  std::uint64_t restarts = 0;  ///< restarts of the base, detected by its clock or registers
+  std::uint64_t starts = 0;    ///< number of setups of the base
   std::uint64_t watchdog_expirations = 0;
   McpDrops drops{};  ///< see drop_name()
 };

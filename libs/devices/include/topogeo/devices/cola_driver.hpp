@@ -1,5 +1,5 @@
-// Drives a SICK TiM or LMS1xx on a network: asks for its name, starts the measurement, and takes
-// the scans that it sends. It changes no setting of the laser.
+// Drives a SICK TiM or LMS1xx on a network: requests its name, starts the measurement and receives
+// its scans. The driver changes no setting of the laser.
 #pragma once
 
 #include <cstdint>
@@ -34,13 +34,13 @@ class ColaDriver final : public LaserDriver {
   void end(std::int64_t now_ns) override;
 
  private:
-  /// The commands of a start, in order.
+  /// Commands that start the laser, in order.
   enum class Step : std::uint8_t {
     kName,
-    kLogIn,    ///< for the next two
-    kMeasure,  ///< starts the motor of an LMS1xx that stands by
+    kLogIn,    ///< gives the right to send the next two
+    kMeasure,  ///< starts the motor of an LMS1xx in standby
     kRun,      ///< logs out
-    kScans     ///< asks for all scans, and takes them
+    kScans     ///< subscribes to all scans
   };
 
   void start(std::int64_t now_ns);
@@ -48,7 +48,7 @@ class ColaDriver final : public LaserDriver {
   [[nodiscard]] ColaTelegram command_of(Step step) const;
   void take(const ColaTelegram& telegram, std::int64_t now_ns);
   void take_scan(const ColaTelegram& telegram, std::int64_t now_ns);
-  /// False for a scan that does not follow the last one.
+  /// Whether the start time of `scan` continues that of the last scan.
   [[nodiscard]] bool follows(const ColaScan& scan) const;
   [[nodiscard]] LaserScan to_scan(const ColaScan& scan, std::int64_t now_ns);
   [[nodiscard]] float range_m(float measured_m) const;
@@ -64,8 +64,8 @@ class ColaDriver final : public LaserDriver {
   std::string reason_ = "the port is closed";
   Step step_ = Step::kName;
   ColaDialect dialect_ = ColaDialect::kText;
-  std::int64_t waits_since_ns_ = 0;  // for an answer or a scan
-  int starts_ = 0;                   // in a row without a scan
+  std::int64_t waits_since_ns_ = 0;  // start of the wait for an answer or a scan
+  int starts_ = 0;                   // consecutive starts without a scan
   std::optional<ColaScan> last_;
   std::int64_t device_ns_ = 0;  // sent_us of the last scan, without wrapping
   std::int64_t last_stamp_ns_ = 0;
@@ -79,7 +79,7 @@ class ColaDriver final : public LaserDriver {
   std::uint64_t implausible_ = 0;
   std::uint64_t repeated_ = 0;
   std::uint64_t other_beams_ = 0;
-  std::uint64_t missed_ = 0;  // scans, by the laser's count
+  std::uint64_t missed_ = 0;  // lost scans, by the laser's counter
   std::vector<LineOrder> orders_;
   std::vector<LaserScan> scans_;
 };

@@ -1,9 +1,12 @@
-// Telegrams of SICK lasers on a network (TiM, LMS1xx): CoLa A, text, and CoLa B, bytes.
+// Telegrams of SICK lasers on a network (TiM, LMS1xx): CoLa A is text, CoLa B is binary.
 //
 // Source: SICK, "Telegram Listing: LMS1xx, LMS5xx, TiM2xx, TiM5xx, TiM7xx ..." (8014631) and the
-// operating instructions of the TiM781. CoLa A is STX, fields separated by blanks, ETX; numbers are
-// hexadecimal without leading zeros. CoLa B is four times STX, the length in four bytes, the same
-// fields as bytes, highest first, behind the name and a blank, and the XOR of all of them.
+// operating instructions of the TiM781.
+// - CoLa A: STX, name and fields separated by blanks, ETX. Numbers are hexadecimal without leading
+//   zeros.
+// - CoLa B: four times STX, the length of the body in four bytes, the body, and the XOR of the
+// body.
+//   The body is the name, a blank, and the same fields as big-endian bytes.
 #pragma once
 
 #include <cstddef>
@@ -19,28 +22,28 @@ namespace topogeo::devices {
 
 enum class ColaDialect : std::uint8_t { kText, kBinary };
 
-/// A telegram: "sRN DeviceIdent" and what follows.
+/// A telegram: a name of two words, for example "sRN DeviceIdent", and its fields.
 struct ColaTelegram {
   ColaDialect dialect = ColaDialect::kText;
   std::string name;    ///< kind and command, for example "sAN SetAccessMode"
-  std::string fields;  ///< behind the blank after the name
+  std::string fields;  ///< the bytes after the name and a blank
   bool operator==(const ColaTelegram&) const = default;
 };
 [[nodiscard]] std::vector<std::uint8_t> cola_bytes(const ColaTelegram& telegram);
 
-/// Reads fields one by one. After a field that is missing or wrong, ok() is false and all further
-/// ones are 0.
+/// Reads fields one by one. After a missing or invalid field, ok() is false and all further fields
+/// are 0.
 class ColaFields {
  public:
   explicit ColaFields(const ColaTelegram& telegram)
       : dialect_(telegram.dialect), rest_(telegram.fields) {}
 
-  /// `bytes`: its size in CoLa B, up to 4.
+  /// `bytes`: size of the number in CoLa B, 1 to 4.
   [[nodiscard]] std::uint32_t number(std::size_t bytes);
   [[nodiscard]] float real();
-  /// `size` characters.
+  /// A text of `size` characters.
   [[nodiscard]] std::string text(std::size_t size);
-  /// A text behind its length.
+  /// A text that follows its length.
   [[nodiscard]] std::string sized_text();
   [[nodiscard]] bool ok() const { return ok_; }
 
@@ -53,7 +56,7 @@ class ColaFields {
   bool ok_ = true;
 };
 
-/// Writes fields.
+/// Writes the fields of a telegram, in the order of the calls.
 class ColaWriter {
  public:
   explicit ColaWriter(ColaDialect dialect) : dialect_(dialect) {}
@@ -78,18 +81,18 @@ struct ColaScan {
   std::uint8_t status = 0;  ///< 0 good, 1 error, 2 window dirty, 5 too dirty
   std::uint16_t scan_counter = 0;
   std::uint32_t start_us = 0;  ///< laser's time at the zero index, before the first beam; wraps
-  std::uint32_t sent_us = 0;   ///< when the scan was complete; wraps
+  std::uint32_t sent_us = 0;   ///< laser's time when the scan was complete; wraps
   double turns_hz = 0.0;
-  double first_deg = 0.0;  ///< 90 degrees are ahead, counter-clockwise
+  double first_deg = 0.0;  ///< bearing of the first beam: counter-clockwise, 90 is ahead
   double step_deg = 0.0;
   std::vector<float> ranges_m;  ///< 0: no return
 };
 inline constexpr std::string_view kColaScanName = "sSN LMDscandata";
-/// Empty for another telegram, or if a field is missing or out of range.
+/// Decodes a scan; empty if the telegram is none, or if a field is missing or out of range.
 [[nodiscard]] std::optional<ColaScan> cola_scan(const ColaTelegram& telegram);
 [[nodiscard]] ColaTelegram cola_telegram(const ColaScan& scan, ColaDialect dialect);
 
-/// Finds telegrams of both dialects in a stream of bytes that is cut anywhere.
+/// Finds telegrams of both dialects in a stream of bytes that may be cut at any byte.
 class ColaReader {
  public:
   [[nodiscard]] std::vector<ColaTelegram> read(std::span<const std::uint8_t> bytes);

@@ -1,10 +1,10 @@
 // Drives an iRobot Create 2 or Roomba by its Open Interface: starts its stream and its safe mode,
 // and sends it the speeds of its wheels.
 //
-// The device obeys its last speeds for ever, and stops by itself at a wheel drop, a cliff ahead or
-// a charger only, by falling to its passive mode. That counts as an emergency stop: the driver asks
-// for the safe mode again only after reset_stop(). When commands cease, the driver sends speeds of
-// 0; stop_bytes() are for who watches over a driver that hangs.
+// The device keeps its last speeds until it gets others. It stops by itself only at a wheel drop, a
+// cliff ahead or a charger, where it falls back to its passive mode. That counts as an emergency
+// stop: the driver requests the safe mode again only after reset_stop(). When commands cease, the
+// driver sends speeds of 0. If the driver hangs, its watchdog sends stop_bytes().
 #pragma once
 
 #include <cstdint>
@@ -36,22 +36,24 @@ class CreateDriver final : public TwoWheelDriver {
   void count_drops(McpDrops& drops) const override;
 
   void obey(const CreateReport& report, std::int64_t time_ns, std::int64_t now_ns);
-  /// Learns how the device counts its modes, from frames that it sends after the start.
+  /// Learns the number of the passive mode from the frames that the device sends after the start,
+  /// because devices number their modes differently.
   void learn_passive(std::uint8_t mode);
   [[nodiscard]] bool obeys_speeds() const;
   [[nodiscard]] Signs signs_of(const CreateReport& report) const;
-  /// Asks for the safe mode, unless it has it, an operator has to release it, or it was just asked.
+  /// Requests the safe mode. Does nothing if the device is in safe mode or on its charger, if a
+  /// stop holds, or if the last request is recent.
   void want_safe_mode(std::int64_t now_ns);
 
   CreateDecoder decoder_;
   FrameTimes times_;
   std::uint8_t mode_ = 0;
-  std::optional<std::uint8_t> passive_mode_;  // its number
-  unsigned frames_until_passive_ = 0;         // that may come from before the start
+  std::optional<std::uint8_t> passive_mode_;  // number of the passive mode
+  unsigned frames_until_passive_ = 0;         // frames left that may be from before the start
   bool charger_ = false;
   bool was_safe_ = false;  // since the driver last made it passive
   std::int64_t asked_safe_ns_ = 0;
-  unsigned safe_requests_ = 0;  // without effect
+  unsigned safe_requests_ = 0;  // consecutive requests without effect
 };
 
 }  // namespace topogeo::devices

@@ -1,4 +1,4 @@
-// The clock of a device, mapped to that of the host.
+// Maps the clock of a device to the clock of the host.
 #pragma once
 
 #include <cstdint>
@@ -6,8 +6,8 @@
 
 namespace topogeo::devices {
 
-/// Maps a device's clock to the host's steady clock: messages come late by varying times but never
-/// early, so the least delay of the last seconds shows the offset between the clocks.
+/// Maps a device's clock to the host's steady clock: messages are delayed by varying times but
+/// never early, so the least delay of the last seconds shows the offset between the clocks.
 class DeviceClock {
  public:
   /// How the offset follows the messages.
@@ -15,8 +15,8 @@ class DeviceClock {
     /// Long enough to contain a message with little delay, short enough to ignore the clocks'
     /// drift.
     std::int64_t window_ns = 5'000'000'000;
-    /// The offset changes by at most one part in so many of the device's time: more than any two
-    /// clocks drift apart, too little to show in a speed.
+    /// The offset changes by at most 1 / slew_divisor of the device's time. That is faster than any
+    /// two clocks drift apart, and too slow to show in a speed.
     std::int64_t slew_divisor = 50;
   };
 
@@ -25,14 +25,14 @@ class DeviceClock {
   DeviceClock(std::int64_t transmission_ns, const Tracking& tracking)
       : transmission_ns_(transmission_ns), tracking_(tracking) {}
 
-  /// Host time of the device's time `device_ns`, for a message that arrived at `arrival_ns`. Later
-  /// than every earlier result, and not later than the arrival unless that requires it; runs at
-  /// most one part in Tracking::slew_divisor faster or slower than the device's clock.
+  /// Host time of the device's time `device_ns`, for a message that arrived at `arrival_ns`.
+  /// Results ascend strictly, for which one may be later than its arrival. The result runs faster
+  /// or slower than the device's clock by at most 1 / Tracking::slew_divisor.
   std::int64_t map(std::int64_t device_ns, std::int64_t arrival_ns);
-  /// Delay of a message relative to the least delayed ones; negative if earlier, but not in the
-  /// first seconds. 0 before the first.
+  /// Delay of a message relative to the least delayed messages; negative if it was delayed less
+  /// than they were, which does not occur in the first seconds. 0 before the first message.
   [[nodiscard]] std::int64_t lateness_ns(std::int64_t device_ns, std::int64_t arrival_ns) const;
-  /// The device's clock starts anew.
+  /// Forgets the offset, because the device's clock has restarted.
   void restart() { started_ = false; }
 
  private:

@@ -1,9 +1,8 @@
 // Receives the scans of a LDROBOT LD06, LD08, LD19 or STL-19P. These lasers send as soon as they
 // have power and read nothing, so the driver only opens the line and listens.
 //
-// The time of each beam is that of the laser's own clock, mapped to the host's. The manuals do not
-// say which moment of a packet the time stamp belongs to; the driver takes it for that of the last
-// beam.
+// Each beam is stamped by the laser's own clock, mapped to the host's clock. The manuals do not say
+// which beam of a packet the time stamp belongs to; the driver assumes the last one.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +30,8 @@ class LdRobotDriver final : public TurningLaserDriver {
   [[nodiscard]] Drops drops() const override;
 
   void take(const LdPacket& packet, std::int64_t arrival_ns);
-  /// Whether the laser can have sent `packet` so long after the last one; counts why not.
+  /// Whether `packet` fits the last packet, sent `passed_ms` earlier: speed and angles continue.
+  /// Counts a packet that does not fit as implausible.
   [[nodiscard]] bool follows(const LdPacket& packet, std::uint32_t passed_ms);
   void add_beams(const LdPacket& packet, std::int64_t last_beam_ns);
 
@@ -40,7 +40,7 @@ class LdRobotDriver final : public TurningLaserDriver {
   DeviceClock clock_;
   std::optional<LdPacket> last_;
   std::int64_t device_ns_ = 0;        // the laser's time without wrapping
-  std::int64_t last_arrival_ns_ = 0;  // of a packet
+  std::int64_t last_arrival_ns_ = 0;  // arrival of the last packet
   std::uint64_t repeated_ = 0;
   std::uint64_t implausible_ = 0;
 };
