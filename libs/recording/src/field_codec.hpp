@@ -22,8 +22,8 @@ static_assert(std::endian::native == std::endian::little);
 template <typename Value>
 concept Number = std::is_arithmetic_v<Value>;
 
-/// In CDR, numbers are aligned to their size, counted after the encapsulation; in ROS 1 they are
-/// not aligned.
+/// Reads the fields of a message one by one. CDR aligns numbers to their size, counted from the end
+/// of the encapsulation header; ROS 1 does not align them.
 template <Encoding kEncoding>
 class FieldReader {
  public:

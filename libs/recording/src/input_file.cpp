@@ -44,7 +44,7 @@ std::span<const std::byte> InputFile::view(std::uint64_t offset, std::size_t cou
         throw std::runtime_error(name_ + ": byte " + std::to_string(offset + filled) +
                                  ": cannot be read: " + system_text());
       }
-      if (got == 0) break;  // the file has been truncated meanwhile
+      if (got == 0) break;  // the file was truncated after it had been opened
       filled += static_cast<std::size_t>(got);
     }
     window_.resize(filled);

@@ -24,7 +24,7 @@ class McapSink final : public MessageSink {
 
  private:
   using Entries =
-      std::vector<std::pair<std::uint64_t, std::uint64_t>>;  // time, offset in the chunk
+      std::vector<std::pair<std::uint64_t, std::uint64_t>>;  // stamp (ns), offset in the chunk
   struct Channel {
     std::uint16_t id = 0;
     std::uint64_t messages = 0;
@@ -40,7 +40,7 @@ class McapSink final : public MessageSink {
   OutputStream file_;
   Compression compression_;
   ByteBuffer chunk_;
-  std::map<std::uint16_t, Entries> entries_;  // of the chunk, by channel
+  std::map<std::uint16_t, Entries> entries_;  // messages of the open chunk, by channel id
   std::map<std::string, Channel> channels_;
   std::map<std::string, std::uint16_t, std::less<>> schemas_;
   ByteBuffer schema_records_;

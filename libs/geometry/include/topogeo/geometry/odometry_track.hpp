@@ -1,4 +1,4 @@
-// The odometry of the last seconds, with poses between its samples or shortly after the last one.
+// The odometry of the last seconds. It gives poses between its samples and shortly after the last.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +29,7 @@ class OdometryTrack {
   explicit OdometryTrack(std::int64_t longest_extrapolation_ns)
       : longest_extrapolation_ns_(longest_extrapolation_ns) {}
 
-  /// Adds a sample. One that is not in time order is ignored, and the result is false.
+  /// Adds a sample. Returns false and ignores the sample if it is not newer than the last one.
   bool add(const OdometrySample& sample);
   /// Drops all samples, because they are unrelated to the following ones.
   void clear() { samples_.clear(); }
@@ -41,8 +41,9 @@ class OdometryTrack {
     Pose2 T_odom_robot;
     bool extrapolated = false;
   };
-  /// Between two samples: see interpolate(). After the last one: on the arc of its speeds. Empty
-  /// before the first sample or too long after the last.
+  /// The pose at `stamp_ns`: interpolated between two samples (see interpolate()), or extrapolated
+  /// after the last one along the arc of its speeds. Empty before the first sample, and more than
+  /// `longest_extrapolation_ns` after the last.
   [[nodiscard]] std::optional<Answer> at(std::int64_t stamp_ns) const;
 
  private:

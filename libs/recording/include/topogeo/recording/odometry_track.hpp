@@ -1,5 +1,5 @@
-// Odometry poses of a recording, for the pose at the time of a scan: with gaps, but all are known.
-// The track of live odometry is in geometry.
+// All odometry poses of a recording, with its gaps. A scan gets its pose from here.
+// The track of live odometry is geometry::OdometryTrack.
 #pragma once
 
 #include <cstdint>
@@ -13,20 +13,20 @@ namespace topogeo::recording {
 
 class OdometryTrack {
  public:
-  /// Longest time between two poses for interpolation, unless the robot stood, and longest time
-  /// before the first or after the last pose for which that pose is used.
+  /// Longest time between two poses that are interpolated. It does not apply to a robot at rest.
   static constexpr std::int64_t kLongestGap_ns = 1'000'000'000;
+  /// The first pose also counts for this time before it, the last pose for this time after it.
   static constexpr std::int64_t kLongestHold_ns = 100'000'000;
-  /// Slower odometry is interpolated over up to two and a half of its periods and this time, if the
-  /// robot moved so little meanwhile: where it was on the path is not known better.
+  /// Slow odometry is interpolated over at most 2.5 of its periods and at most this time, if the
+  /// robot moved no farther than the two limits below, because nothing better is known.
   static constexpr std::int64_t kLongestSlowGap_ns = 5'000'000'000;
   static constexpr double kFarthestStep_m = 2.0;
   static constexpr double kLargestTurn_rad = 1.6;
 
-  /// Adds poses in approximate order of time; the last one at a time counts.
+  /// Adds a pose. Poses come in approximate order of time; of equal stamps the last one counts.
   void add(std::int64_t stamp_ns, const geometry::Pose2& T_odom_robot);
 
-  /// Call after the last pose: finds the period.
+  /// Finds the period; must be called after the last pose and before at().
   void finish();
 
   /// Median time between poses; 0 with fewer than two or before finish().
@@ -35,15 +35,15 @@ class OdometryTrack {
   /// Whether there are poses at or before and at or after `stamp_ns`.
   [[nodiscard]] bool covers(std::int64_t stamp_ns) const;
 
-  /// The pose at `stamp_ns`: a pose with that stamp unchanged, otherwise interpolated linearly,
-  /// with the heading along the shorter turn. Empty if none is near.
+  /// The pose at `stamp_ns`. A pose with that stamp is returned unchanged; others are interpolated
+  /// linearly, with the heading along the shorter turn. Empty if no pose is near.
   [[nodiscard]] std::optional<geometry::Pose2> at(std::int64_t stamp_ns) const;
 
   struct Gap {
-    std::optional<std::int64_t> before_ns;  ///< stamp of the last pose before it
+    std::optional<std::int64_t> before_ns;  ///< stamp of the last pose before the time asked for
     std::optional<std::int64_t> after_ns;   ///< stamp of the first pose after it
-    double step_m = 0.0;                    ///< between the two
-    double turn_rad = 0.0;                  ///< the same, >= 0
+    double step_m = 0.0;                    ///< distance between the two poses
+    double turn_rad = 0.0;                  ///< turn between the two poses, >= 0
   };
   /// The poses on both sides of `stamp_ns`.
   [[nodiscard]] Gap gap_at(std::int64_t stamp_ns) const;
@@ -52,7 +52,7 @@ class OdometryTrack {
   [[nodiscard]] bool bridges(const geometry::OdometrySample& a,
                              const geometry::OdometrySample& b) const;
 
-  std::vector<geometry::OdometrySample> samples_;  // speeds are unknown
+  std::vector<geometry::OdometrySample> samples_;  // their speeds are unset
   std::int64_t period_ns_ = 0;
 };
 
