@@ -1,5 +1,5 @@
-// The base behind its collision guard: checks every velocity, and every reason of base and sensors
-// not to move at all.
+// The base behind its collision guard: limits every velocity, and checks whether the state of base
+// and sensors forbids any motion.
 #pragma once
 
 #include <cstdint>
@@ -29,40 +29,40 @@ class GuardedBase {
   void add(const SonarRound& sonar);
   void add(const LaserFields& fields) { guard_.add(fields); }
   void add(const BaseCondition& base) { base_ = base; }
-  /// The reason to stand that the base does not report, for people; empty: none.
+  /// Sets a reason to stand that the base does not report, as text for people; empty: none.
   void set_stopped(std::string why) { stopped_ = std::move(why); }
-  /// The load of this machine at `now_ns`. A base that seems stuck while the machine is busy may
-  /// get its orders too late: it is tried again once the machine has time, at most kTries times
-  /// until it moves.
+  /// Sets the load of this machine at `now_ns`. A base that seems stuck while the machine is busy
+  /// may have got its commands too late. It is tried again once the machine has time, at most
+  /// kTries times until it moves.
   void set(const MachineLoad& load, std::int64_t now_ns);
   void keep_off(std::int64_t stamp_ns, std::vector<Eigen::Vector2d> points_m) {
     guard_.keep_off(stamp_ns, std::move(points_m));
   }
 
-  /// The reason why no motion is possible, with one line for people; kNone if it is possible.
+  /// The reason why no motion is possible, or kNone. `message` gets one line of text for people.
   HaltReason halted(std::int64_t now_ns, std::string& message) const;
 
   struct Command {
     GuardVerdict verdict;
     bool stopped = false;        ///< the guard allows no motion ahead
-    bool newly_stopped = false;  ///< and allowed some at the last command
+    bool newly_stopped = false;  ///< as `stopped`, but it allowed some at the last command
   };
-  /// The part of a wanted velocity that the base gets. A stuck base is not detected without
-  /// odometry.
+  /// The part of a wanted velocity that the guard allows. Without odometry, a stuck base is not
+  /// detected.
   Command command(const geometry::Velocity& wanted,
                   const std::optional<geometry::Pose2>& T_odom_robot, std::int64_t now_ns);
-  /// Orders the base to stand.
+  /// Records that the base is commanded to stand.
   void stand() { watch_.reset(); }
 
-  /// The guard has stopped the motion ahead for longer than a passer-by needs to step aside.
+  /// Whether the guard has stopped motion ahead for longer than a passer-by needs to step aside.
   [[nodiscard]] bool held(std::int64_t now_ns) const;
-  /// Another path or order: discards the guard's earlier stops.
+  /// Discards the guard's earlier stops, because another path or order applies.
   void release() { stopped_ns_.reset(); }
-  /// Allows another try of a base that was stuck.
+  /// Lets a stuck base try again.
   void retry();
-  /// The base is stuck and stands until retry().
+  /// Whether the base is stuck and stands until retry().
   [[nodiscard]] bool is_stuck() const { return stuck_ns_ && !tries_again_; }
-  /// Stands until retry(), like a base that was found stuck and is not tried again.
+  /// Makes the base stand until retry(), as if it had been found stuck.
   void stay_stuck();
 
   [[nodiscard]] const CollisionGuard& guard() const { return guard_; }
@@ -76,13 +76,13 @@ class GuardedBase {
   void retry_now();
 
   double stuck_s_;
-  bool outlined_;  ///< an obstacle can also stop a turn and motion back
+  bool outlined_;  ///< obstacles also stop turns and motion backwards
   CollisionGuard guard_;
   NearEchoes near_;
   BaseWatch watch_;
   std::optional<BaseCondition> base_;
   std::string stopped_;                     ///< reason to stand; empty: none
-  std::int64_t odometry_ns_ = 0;            ///< stamp of the newest
+  std::int64_t odometry_ns_ = 0;            ///< stamp of the newest odometry
   std::optional<std::int64_t> stuck_ns_;    ///< last detection; empty: not stuck
   std::optional<std::int64_t> busy_ns_;     ///< when the machine was last busy
   bool tries_again_ = false;                ///< stuck, but maybe for lack of CPU time

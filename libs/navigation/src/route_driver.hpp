@@ -1,4 +1,4 @@
-// Follows the current route: searches the path again if an obstacle is in its way, and limits the
+// Follows the current route: searches another path if an obstacle blocks this one, and limits the
 // speed before obstacles.
 #pragma once
 
@@ -23,8 +23,8 @@ FollowerConfig follower_config(const NavigatorConfig& config);
 
 class RouteDriver {
  public:
-  /// Between two searches for a path round an obstacle: each takes some milliseconds, and the
-  /// laser's view of an obstacle changes little in a shorter time.
+  /// Shortest time between two searches for a path round an obstacle. A search takes some
+  /// milliseconds, and the laser's view of an obstacle changes little in a shorter time.
   static constexpr double kPlanEvery_s = 0.3;
 
   explicit RouteDriver(const NavigatorConfig& config);
@@ -40,9 +40,9 @@ class RouteDriver {
         reported_m{};  ///< obstacles reported to the planner, map frame
   };
 
-  /// Requests another path from the robot's place.
+  /// Requests another path from the robot's position.
   void need_path() { needs_path_ = true; }
-  /// The pose was lost or has jumped: the route may be useless from the robot's place.
+  /// Marks the route as doubtful, because the pose was lost or has jumped.
   void doubt_route() { doubts_route_ = true; }
   void trust_route() { doubts_route_ = false; }
   void forget() {
@@ -55,37 +55,37 @@ class RouteDriver {
   [[nodiscard]] const PathFollower& follower() const { return follower_; }
   PathFollower& follower() { return follower_; }
 
-  /// Whether the robot is far off its path and a route from its place would be better.
+  /// Whether the robot is far off its path, so that a route from its position would be better.
   bool astray(const Eigen::Vector2d& robot_m);
 
   /// Whether the last search for a path was less than kPlanEvery_s ago.
   [[nodiscard]] bool just_planned(std::int64_t now_ns) const;
-  /// Searches a path and follows it; false if there is none, or no better one. Takes a much longer
-  /// detour only after the obstacle has had its time to move away.
+  /// Searches a path and follows it. Returns false if there is no path, or no better one. Takes a
+  /// much longer detour only after the obstacle has had its time to move away.
   bool find_path(const Scene& scene);
 
   struct Step {
     FollowerStep follower;
-    bool another_path = false;  ///< found
-    bool before_block = false;  ///< stands, or nearly, before an obstacle in the way
+    bool another_path = false;  ///< another path was found
+    bool before_block = false;  ///< stands, or nearly so, before an obstacle on the path
   };
-  /// The next velocity along the path. `held`: the guard stops the robot, so it searches another
-  /// path.
+  /// The next velocity along the path. `held`: the guard stops the robot, so another path is
+  /// searched.
   Step follow(const Scene& scene, bool held);
 
   struct Detours {
     std::uint32_t all = 0;
-    std::uint32_t on_branches = 0;  ///< of these along branches of a scan
-    std::uint32_t on_virtual = 0;   ///< of these along virtual ones
+    std::uint32_t on_branches = 0;  ///< detours along branches of a scan
+    std::uint32_t on_virtual = 0;   ///< those of them along virtual branches
   };
-  /// Detours taken since the last call.
+  /// Detours begun since the last call.
   Detours take_detours() { return std::exchange(detours_, {}); }
-  /// The obstacle in the way; nothing if there was none in the last step along the path.
+  /// The obstacle that blocked the last step along the path; empty if there was none.
   [[nodiscard]] const std::optional<PathBlock>& block() const { return block_; }
-  /// The same as text.
+  /// The result of block() as text for people.
   [[nodiscard]] std::string describe_block() const;
 
-  /// Why no path is wide enough for the outline of the robot; empty if that is not known.
+  /// The reason why no path is wide enough for the outline of the robot; empty if unknown.
   [[nodiscard]] const std::string& refused() const { return refused_; }
 
  private:

@@ -1,5 +1,5 @@
-// A search window as a graph of Boost.Graph: the vertices are the cells by their number in the
-// window, the edges lead to the open neighbours.
+// A search window as a graph of Boost.Graph. A vertex is the index of a cell in the window; edges
+// lead to the open neighbours.
 #pragma once
 
 #include <array>
@@ -21,8 +21,8 @@ struct CellEdge {
   friend bool operator==(const CellEdge&, const CellEdge&) = default;
 };
 
-/// Bit k is neighbour k: 0 to 3 straight (east, north, west, south), 4 to 7 diagonal (north-east,
-/// north-west, south-west, south-east).
+/// Bit k of a mask is neighbour k: 0 to 3 straight (east, north, west, south), 4 to 7 diagonal
+/// (north-east, north-west, south-west, south-east).
 class CellGraph {
  public:
   explicit CellGraph(const SearchWindow& window)
@@ -118,5 +118,5 @@ struct boost::graph_traits<topogeo::planning::CellGraph> {
   using directed_category = boost::directed_tag;
   using edge_parallel_category = boost::disallow_parallel_edge_tag;
   using traversal_category = boost::incidence_graph_tag;
-  static std::uint32_t null_vertex() { return 0; }  // closed: a corner of the window's rim
+  static std::uint32_t null_vertex() { return 0; }  // this corner of the window's rim is closed
 };
