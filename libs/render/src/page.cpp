@@ -28,7 +28,7 @@ void check(cairo_status_t status) {
   }
 }
 
-/// Write function for cairo's output to memory.
+/// Appends cairo's output to the std::string `bytes`; a cairo_write_func_t.
 cairo_status_t append(void* bytes, const unsigned char* data, unsigned int length) {
   static_cast<std::string*>(bytes)->append(reinterpret_cast<const char*>(data), length);
   return CAIRO_STATUS_SUCCESS;

@@ -13,12 +13,12 @@ namespace topogeo::topomap {
 
 class SeenRegion {
  public:
-  /// Built from the scan points of `map`, in beam order seen from the laser. Neighbouring points
-  /// further apart than gap_m have an opening between them.
+  /// Builds the region from the scan points of `map`, in beam order seen from the laser.
+  /// Consecutive points farther apart than gap_m have an opening between them.
   SeenRegion(const LocalMap& map, double gap_m);
 
-  /// True if the point (robot frame) was seen and nothing unseen lies within radius_m of it: the
-  /// diagram at that point is then the same as in a fully known environment.
+  /// Whether the point (robot frame) was seen and nothing unseen lies within radius_m of it. The
+  /// diagram at such a point is the same as in a fully known environment.
   [[nodiscard]] bool certain(const Eigen::Vector2d& point_m, double radius_m) const;
 
  private:
@@ -28,8 +28,8 @@ class SeenRegion {
     double length2_m2 = 0.0;
   };
 
-  /// Neighbouring openings with their box: most groups are too far from a point to check each
-  /// opening.
+  /// Neighbouring openings with their bounding box. A point that is far from the box needs no check
+  /// of each opening.
   struct Openings {
     std::size_t begin = 0;
     std::size_t end = 0;

@@ -1,4 +1,4 @@
-// Handling of matches from a widened search: it finds the place, and others that look like it.
+// Handling of matches from a widened search, which also finds places that only look alike.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace topogeo::localization {
 
-/// Rejects the accepted matches of a widened search unless odometry allows at least one of them (99
-/// %).
+/// Rejects all accepted matches of a widened search unless odometry allows at least one of them:
+/// its squared Mahalanobis distance is within LookAlikeLimits::kAllowed2 (99 %).
 void refuse_look_alikes(std::vector<StopMatch>& matches, const OdometrySteps& steps);
 
 }  // namespace topogeo::localization

@@ -72,10 +72,10 @@ class Option {
   Option* check(const Check& check);
   /// `test` returns the fault of a value, or an empty text for a good one.
   Option* check(const std::function<std::string(const std::string&)>& test);
-  /// The value is a number, given by name. Help does not list the names, the completion does.
+  /// The value is a number that is given by its name. Completion offers the names; help does not
+  /// list them.
   Option* named_values(const std::vector<std::pair<std::string, std::uint32_t>>& values);
-  /// Words that the completion offers beside those of a check with one_of(); other values stay
-  /// allowed.
+  /// Adds words that completion offers beside those of one_of(). Other values stay allowed.
   Option* completed_by(std::vector<std::string> words);
   Option* needs(const Option* other);
   Option* excludes(const Option* other);
@@ -92,7 +92,7 @@ class Option {
   /// value each time it is given.
   Option* allow_extra_args(bool value);
 
-  /// Number of values that were given.
+  /// Number of values on the command line.
   [[nodiscard]] std::size_t count() const;
 
  private:

@@ -1,10 +1,10 @@
 // Turns the nearest sites of the cells into ordered branches and nodes (Thesis, 4.2.2.3, eq.
-// 4.19-4.25; docs/algorithms.md, "Local Voronoi diagram"). local_voronoi.hpp compares them with the
-// cells there.
+// 4.19-4.25; docs/algorithms.md, "Local Voronoi diagram"). local_voronoi.hpp compares cracks with
+// the cells of the Thesis.
 //
-// Cracks are the cell borders between different groups; they are followed from corner to corner of
-// the grid. A corner where three groups meet is a node. If only two groups meet crosswise (a b / b
-// a), the crack does not cross itself: the diagonal whose group is nearer at the corner stays
+// A crack is a border between cells of different groups. Cracks are followed from corner to corner
+// of the grid. A corner where three groups meet is a node. If only two groups meet crosswise (a b /
+// b a), the crack does not cross itself: the diagonal whose group is nearer at the corner stays
 // connected. Nodes joined by a very short branch become one node at their mean.
 #pragma once
 
@@ -24,7 +24,7 @@ namespace topogeo::voronoi {
 struct DiagramPoint {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< laser frame
   double clearance_m = 0.0;                              ///< distance to both base groups
-  /// Depth to which the circle of the clearance reaches beyond the seen space (see Frontier); 0:
+  /// How far the circle of the clearance reaches beyond the seen space (see Frontier). It is 0 if
   /// the whole circle was seen.
   double hidden_m = 0.0;
 };
@@ -33,8 +33,8 @@ struct DiagramNode {
   Eigen::Vector2d position_m = Eigen::Vector2d::Zero();  ///< laser frame
   double clearance_m = 0.0;
   double hidden_m = 0.0;  ///< as in DiagramPoint
-  /// Run of LocalVoronoiDiagram::node_groups: equally near, ascending, at least three; rarely more
-  /// than four.
+  /// The equally near groups: a run of LocalVoronoiDiagram::node_groups, ascending. It has at least
+  /// three entries, rarely more than four.
   PointRun base_groups;
 };
 
@@ -42,19 +42,19 @@ struct DiagramBranch {
   static constexpr std::uint32_t kLoose = 0xffffffff;  ///< an end at the border of what is visible
   std::uint32_t node_a = kLoose;                       ///< node at the first point, or kLoose
   std::uint32_t node_b = kLoose;                       ///< node at the last point, or kLoose
-  std::array<std::uint16_t, 2> base_groups{};          ///< ascending
+  std::array<std::uint16_t, 2> base_groups{};          ///< the two nearest groups, ascending
   /// Points [begin, end) of LocalVoronoiDiagram::points, ordered from node_a to node_b and
   /// including the positions of the nodes; at least two.
   PointRun points;
 };
 
 struct LocalVoronoiDiagram {
-  GeneratorGroups groups;          ///< of the scan, followed by virtual groups
+  GeneratorGroups groups;          ///< groups of the scan, followed by virtual groups
   std::vector<DiagramNode> nodes;  ///< each has a branch
   std::vector<DiagramBranch> branches;
-  std::vector<DiagramPoint> points;        ///< of all branches
+  std::vector<DiagramPoint> points;        ///< points of all branches
   std::vector<std::uint16_t> node_groups;  ///< base groups of all nodes
-  bool is_virtual = false;                 ///< fewer than two groups, or none that meet in view
+  bool is_virtual = false;                 ///< built because fewer than two groups meet in view
 
   [[nodiscard]] std::span<const DiagramPoint> points_of(const DiagramBranch& branch) const {
     return {points.data() + branch.points.begin, branch.points.size()};
@@ -64,10 +64,10 @@ struct LocalVoronoiDiagram {
   }
 };
 
-/// Follows the cracks of a grid. A reusable work space.
+/// Follows the cracks of a grid. An object can be used again, which saves allocations.
 class CrackGraph {
  public:
-  /// Replaces nodes with their groups, branches and points of `out`.
+  /// Replaces the nodes, node groups, branches and points of `out`.
   void trace(const NearestSiteGrid& grid, std::span<const Site> sites, const VoronoiConfig& config,
              LocalVoronoiDiagram& out);
 
@@ -90,7 +90,7 @@ class CrackGraph {
     double clearance_m = 0.0;
     std::array<std::uint16_t, 4> groups{};
     int group_count = 0;
-    std::uint32_t merged_into = 0;  ///< itself, or an earlier junction
+    std::uint32_t merged_into = 0;  ///< index of this or an earlier junction
   };
 
   void find_cracks();
@@ -116,15 +116,15 @@ class CrackGraph {
   const NearestSiteGrid* grid_ = nullptr;
   std::span<const Site> sites_;
   std::uint32_t stride_ = 0;                ///< corners in a row of corners
-  std::vector<std::uint8_t> cracks_;        ///< per corner, a bit for each direction
-  std::vector<std::uint8_t> used_;          ///< the same bits once traced
-  std::vector<std::uint32_t> corners_;      ///< with at least one crack
+  std::vector<std::uint8_t> cracks_;        ///< per corner: a bit for each direction
+  std::vector<std::uint8_t> used_;          ///< per corner: the bits of the traced cracks
+  std::vector<std::uint32_t> corners_;      ///< corners with at least one crack
   std::vector<std::uint32_t> junction_at_;  ///< per corner: index + 1, or 0
   std::vector<Junction> junctions_;
   std::vector<Piece> pieces_;
   std::vector<DiagramPoint> points_;
-  std::vector<std::uint32_t> node_of_;  ///< per junction
-  std::vector<int> members_;            ///< per junction: number of those merged into it
+  std::vector<std::uint32_t> node_of_;  ///< per junction: index of its node
+  std::vector<int> members_;            ///< per junction: number of junctions merged into it
   struct NodeGroup {
     std::uint32_t node = 0;
     std::uint16_t group = 0;
