@@ -1,5 +1,5 @@
-// Combines scans and odometry: numbers and stamps scans, adds the odometry at their time, takes the
-// motion during a turn of the laser out of its ranges, and counts unusable scans.
+// Combines scans and odometry: numbers and stamps scans, adds the odometry at their time, corrects
+// their ranges for the motion during a turn of the laser, and counts unusable scans.
 #pragma once
 
 #include <array>
@@ -22,20 +22,20 @@ namespace topogeo::sensor_gateway {
 /// Reason why a scan of the laser was not published.
 enum class ScanDrop : std::uint8_t {
   kNoReader,    ///< there is no reader yet
-  kNoOdometry,  ///< before the first odometry, or too long after the last
+  kNoOdometry,  ///< stamped before the first odometry, or too long after the last
   kTime,        ///< not newer than the previous scan
-  kGeometry,    ///< other beams than the first scan
+  kGeometry,    ///< angles or number of beams differ from the first scan
   kRepeated     ///< same readings as the previous scan to the last digit, but the robot has moved
 };
 inline constexpr std::size_t kScanDrops = 5;
-/// Text for people.
+/// The reason as text for people.
 std::string_view describe(ScanDrop drop);
 
 struct ScanGateOptions {
   bool has_base = true;                       ///< false: the odometry is always the identity
   std::int64_t odometry_wait_ns = 0;          ///< longest wait for odometry after a scan; >= 0
   std::int64_t longest_extrapolation_ns = 0;  ///< see OdometryTrack
-  std::uint64_t odometry_epoch = 0;           ///< of the odometry that it gets
+  std::uint64_t odometry_epoch = 0;           ///< epoch of the odometry that is added
   double range_max_m = 49.9;                  ///< larger ranges mean no return, as in logs
   geometry::Pose2 T_robot_laser{};            ///< mounting of the laser
 };
@@ -46,9 +46,9 @@ class ScanGate {
   explicit ScanGate(const ScanGateOptions& options)
       : options_(options), track_(options.longest_extrapolation_ns) {}
 
-  /// Nothing is published before this call.
+  /// Starts the output; earlier scans are dropped as kNoReader.
   void open() { open_ = true; }
-  /// Sets the epoch of the odometry and the number of the next scan. Call it before the first.
+  /// Sets the epoch of the odometry and the number of the next scan. Must precede the first scan.
   void begin(std::uint64_t odometry_epoch, std::uint64_t next_sequence) {
     options_.odometry_epoch = odometry_epoch;
     next_sequence_ = next_sequence;
@@ -57,12 +57,12 @@ class ScanGate {
   void add(const geometry::OdometrySample& sample) { track_.add(sample); }
 
   struct Leaving {
-    scan::Scan scan;              ///< stamped by the clock of the times here
-    std::int64_t arrival_ns = 0;  ///< when it was added
+    scan::Scan scan;              ///< its stamp is a time of the steady clock
+    std::int64_t arrival_ns = 0;  ///< time at which the scan was added
   };
   /// The scans that can be published by now, in order.
   std::vector<Leaving> take(std::int64_t now_ns);
-  /// Latest time at which take() returns something; the largest number while nothing waits.
+  /// Time by which take() returns the oldest waiting scan; the largest int64 while none waits.
   [[nodiscard]] std::int64_t due_ns() const;
 
   [[nodiscard]] std::uint64_t scans() const { return next_sequence_; }
@@ -84,7 +84,7 @@ class ScanGate {
   };
 
   std::optional<scan::Scan> finish(devices::LaserScan&& scan);
-  /// The ranges as if all had been measured at the stamp.
+  /// The ranges, corrected as if all beams had been measured at the stamp.
   [[nodiscard]] std::vector<float> ranges_at_stamp(devices::LaserScan&& scan) const;
   void drop(ScanDrop reason) { ++drops_[static_cast<std::size_t>(reason)]; }
 

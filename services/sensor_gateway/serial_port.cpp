@@ -83,14 +83,14 @@ class SerialPort::Impl {
   asio::io_context context_;
   asio::executor_work_guard<asio::io_context::executor_type> work_{context_.get_executor()};
   std::unique_ptr<PortStream> stream_;
-  std::optional<StopSentry> sentry_;  // ends before the stream
+  std::optional<StopSentry> sentry_;  // declared after the stream, so that it ends before it
   asio::steady_timer retry_{context_};
   milliseconds wait_;
   std::atomic<std::uint64_t> epoch_ = 0;
   std::uint64_t epoch_opened_ = 0;
   std::array<std::uint8_t, 4096> buffer_{};
   std::deque<LineOrder> queue_;
-  std::uint64_t finished_ = 0;  // orders, since the port was opened
+  std::uint64_t finished_ = 0;  // orders carried out since the port was opened
   bool writing_ = false;
   std::vector<std::shared_ptr<std::promise<void>>> waiters_;
   std::thread thread_;
@@ -125,7 +125,7 @@ void SerialPort::Impl::read() {
   stream_->read(asio::buffer(buffer_),
                 [this, opened = epoch_opened_](const error_code& error, std::size_t size) {
                   if (opened != epoch_opened_ || !stream_->is_open())
-                    return;  // of a port that was closed
+                    return;  // the port was closed after this read began
                   if (error) {
                     lose(stream_->explain(error));
                     return;
@@ -141,7 +141,7 @@ void SerialPort::Impl::carry_out() {
   while (!writing_ && !queue_.empty()) {
     if (const auto settings = std::exchange(queue_.front().settings, std::nullopt)) {
       change(*settings);
-      continue;  // the queue is empty when that failed
+      continue;  // a failure has emptied the queue
     }
     if (const auto dtr = std::exchange(queue_.front().dtr, std::nullopt)) {
       stream_->set_dtr(*dtr);

@@ -13,16 +13,16 @@ namespace topogeo::sensor_gateway {
 
 class StopMemory {
  public:
-  /// With an empty path nothing is kept. Throws std::runtime_error naming the file if it cannot be
-  /// opened or created.
+  /// Opens or creates the file; with an empty path nothing is kept. Throws std::runtime_error
+  /// naming the file if that fails.
   explicit StopMemory(const std::filesystem::path& path);
 
   /// The stops that hold. A damaged file counts as a halt, because a stop may have been in it.
   [[nodiscard]] const devices::HeldStops& held() const { return held_; }
   /// True if the file was damaged.
   [[nodiscard]] bool damaged() const { return damaged_; }
-  /// Writes changes only. False if the file cannot be written: it is damaged then, and the next
-  /// call tries again.
+  /// Writes `held` if it differs from the file. Returns false if the file cannot be written: it is
+  /// then damaged, and the next call tries again.
   [[nodiscard]] bool store(const devices::HeldStops& held);
 
  private:
@@ -37,7 +37,7 @@ class StopMemory {
   bool damaged_;  // judged before the file is created
   support::RecordFile<Record> file_;
   devices::HeldStops held_;
-  bool written_ = true;  // what the file has is held_
+  bool written_ = true;  // whether the file contains held_
 };
 
 }  // namespace topogeo::sensor_gateway

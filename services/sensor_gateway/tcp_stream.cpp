@@ -18,9 +18,9 @@ using boost::system::error_code;
 
 namespace {
 
-/// A device on the robot answers within milliseconds.
+/// Longest wait for a connection; a device on the robot answers within milliseconds.
 constexpr std::chrono::seconds kLongestConnect{3};
-/// Time without an acknowledgement, or without an answer to probes, that ends a connection.
+/// A connection ends after this time without an acknowledgement or an answer to a probe.
 constexpr int kDeadAfter_ms = 3000;
 constexpr int kProbeAfter_s = 1;
 
