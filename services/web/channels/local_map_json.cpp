@@ -13,7 +13,7 @@ namespace {
 /// Distance below which consecutive outline points are dropped.
 constexpr double kOutlineStep_m = 0.08;
 
-/// x and y of each point in turn, in centimetres.
+/// The outline as a flat list: x and y of each point in turn, in centimetres.
 Json outline_json(const topomap::LocalMap& map) {
   constexpr float kCentimetres = 100.0F;
   Json outline = Json::array();

@@ -12,12 +12,12 @@ class AuditLog {
  public:
   static constexpr std::size_t kMostBody_bytes = 1000;
 
-  /// Appends to `file`; empty: keeps no log. Throws std::runtime_error with the file if it cannot
-  /// be opened.
+  /// Opens `file` to append; with an empty path no log is kept. Throws std::runtime_error naming
+  /// the file if it cannot be opened.
   explicit AuditLog(const std::filesystem::path& file);
 
   /// Appends {"time","who","order","body"}; a body that is longer than kMostBody_bytes is cut.
-  /// False when the line could not be written.
+  /// Returns false if the line could not be written.
   bool add(std::int64_t wall_ns, const std::string& who, const std::string& order,
            const std::string& body);
 

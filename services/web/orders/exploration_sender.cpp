@@ -59,16 +59,16 @@ void ExplorationSender::take(const msg::NavigatorStatus& status,
   if (end_of_goal == GoalList::End::kTakenOver) return end();
   try {
     navigator_ = service::from_msg(status);
-  } catch (const std::invalid_argument&) {  // the next one comes soon
+  } catch (const std::invalid_argument&) {  // ignored, because the next status comes soon
   }
 }
 
 void ExplorationSender::step() {
-  // A target without a navigator, or during a pause, is not out of reach.
+  // A target does not count as out of reach while the navigator is absent or paused.
   if (!exploration_.running() || !goals_.has_navigator() || goals_.is_pausing()) return;
   try {
     newest_ = floor_();
-  } catch (const std::invalid_argument&) {  // an incomplete map: the previous one stays
+  } catch (const std::invalid_argument&) {  // an incomplete map: keep the previous one
   }
   navigation::NavigatorStatus navigator = navigator_;
   navigator.T_map_robot.reset();
@@ -82,7 +82,7 @@ void ExplorationSender::step() {
   const std::size_t visited = exploration_.visited();
   const std::size_t given_up = exploration_.given_up();
   if (!exploration_.done()) return goals_.show_exploration(visited, given_up, false);
-  // The last target may have been given up on the way.
+  // The robot may still drive to a target that was given up.
   if (goals_.under_way()) goals_.cancel();
   end();
   goals_.show_exploration(visited, given_up, true);

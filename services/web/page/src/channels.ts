@@ -9,11 +9,11 @@ import {
   Values,
 } from "./protocol";
 
-/** The changes of a table by one message. */
+/** Changes that one message makes to a table. */
 export interface Change {
   set: string[];
   gone: string[];
-  all: boolean; // a snapshot: keys that are not in `set` are removed, too
+  all: boolean; // true for a snapshot: keys that are not in `set` are removed, too
 }
 
 type TableListener = (change: Change) => void;
@@ -50,7 +50,7 @@ export class Channels {
     return this.tables.get(name) as ReadonlyMap<string, Tables[Name]>;
   }
 
-  /** Versions of the tables held, from which the service continues. */
+  /** Versions of the tables of this page; the service sends the changes since then. */
   held(): Record<string, number> {
     return Object.fromEntries(this.versions);
   }
@@ -65,7 +65,7 @@ export class Channels {
     this.table_listeners.set(name, [...(this.table_listeners.get(name) ?? []), listener]);
   }
 
-  /** Applies a message of a channel; false for a delta on a version that is not held. */
+  /** Applies a message of a channel; false for a delta from a version that the page lacks. */
   apply(message: ValueMessage | TableMessage): boolean {
     this.unconfirmed.delete(message.channel);
     if ("from" in message) return this.apply_table(message);
@@ -75,7 +75,7 @@ export class Channels {
     return true;
   }
 
-  /** Forgets momentary values; keeps the map and the tables to continue from. */
+  /** Forgets momentary values; keeps the map and the tables, which later deltas continue. */
   forget_moment(): void {
     for (const name of Object.keys(this.values) as ValueName[]) {
       if (name !== "map") this.apply({ channel: name, version: 0, value: null });
@@ -99,13 +99,13 @@ export class Channels {
     this.live.add(name);
   }
 
-  /** A new service answers from now on, with version numbers of its own. */
+  /** Prepares for a new service, which has version numbers of its own. */
   begin_anew(): void {
     this.versions.clear();
     for (const name of [...tableNames, "map"]) this.unconfirmed.add(name);
   }
 
-  /** Forgets everything not sent since begin_anew(): the service does not have it. */
+  /** Forgets all that was not sent since begin_anew(), because the new service does not have it. */
   drop_unconfirmed(): void {
     for (const name of this.unconfirmed) {
       if (name === "map") {
@@ -121,7 +121,7 @@ export class Channels {
 
   private apply_table(message: TableMessage): boolean {
     const table = this.tables.get(message.channel);
-    if (!table) return true; // from a newer service
+    if (!table) return true; // a newer service may have tables that this page does not know
     const all = message.from === 0;
     if (!all && message.from !== this.versions.get(message.channel)) return false;
     if (all) table.clear();

@@ -1,5 +1,5 @@
-// The picture of a plan behind the drawing, placed by two points of known distance. It stays in the
-// page.
+// The picture of a plan behind the drawing, placed by two points of known distance. The picture is
+// not sent to the service.
 import { View } from "../map/map_canvas";
 import { rotation, to_pixels } from "../map/to_pixels";
 import { distance, heading, Point } from "./geometry";
@@ -9,13 +9,13 @@ export interface Placement {
   x_m: number; // upper left corner, map frame
   y_m: number;
   metres_per_pixel: number;
-  angle_rad: number; // of its rows, counter-clockwise
+  angle_rad: number; // direction of its rows, counter-clockwise
 }
 
 const firstWidthM = 20;
-const straightRad = 0.15; // plans are scanned slightly askew
+const straightRad = 0.15; // largest rotation that is taken for a plan scanned slightly askew
 
-/** A picture of this many pixels around a point, before it is measured. */
+/** Places a picture of this size in pixels around a point, until two points of it are measured. */
 export function first_placement(width: number, height: number, centre: Point): Placement {
   const metres_per_pixel = firstWidthM / width;
   return {

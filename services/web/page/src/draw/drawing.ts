@@ -1,6 +1,6 @@
 // The drawing on the map: places, zones, walls, openings, doors, kept apart from the mapped data.
 // Metres and radians, map frame; lists of points are flat: x, y, x, y. A drawing is never changed
-// in place: each edit makes a new one, so that undo is a list of them.
+// in place: each edit makes a new drawing, so undo needs only a list of drawings.
 import { texts } from "../texts";
 
 export interface DrawnPlace {
@@ -15,7 +15,7 @@ export type ZoneKind = "room" | "no_go" | "slow" | "one_way" | "preferred";
 export interface DrawnZone {
   name: string;
   kind: ZoneKind;
-  value: number; // m/s of slow, heading in rad of one_way, else 0
+  value: number; // slow: speed in m/s; one_way: heading in rad; otherwise 0
   corners_m: number[];
 }
 
@@ -38,7 +38,7 @@ export interface Drawing {
 
 export type ListName = keyof Drawing;
 export type Item = Drawing[ListName][number];
-/** The kind of an item for people, which is also the tool that draws it. */
+/** The kind of an item as the page shows it; the tool that draws it has the same name. */
 export type ItemKind = "place" | "base" | "wall" | "opening" | "door" | ZoneKind;
 
 /** One item of a drawing. */
@@ -51,7 +51,7 @@ export interface ItemRef {
 export const listNames: readonly ListName[] = ["places", "doors", "openings", "walls", "zones"];
 const zoneKinds: readonly ZoneKind[] = ["room", "no_go", "slow", "one_way", "preferred"];
 
-/** Limits of the service, per list and for the corners of an item. */
+/** Limits of the service: items of a list, and corners of an item. */
 export const mostItems = 4096;
 export const mostCorners = 256;
 
@@ -98,7 +98,7 @@ export function fewest_points(list: ListName): number {
   return list === "places" ? 1 : list === "zones" ? 3 : 2;
 }
 
-/** Whether an item may have more than that smallest number. */
+/** Whether an item of a list may have more points than the smallest number. */
 export function is_extensible(list: ListName): boolean {
   return list === "zones" || list === "walls";
 }
@@ -129,7 +129,7 @@ export function name_is_free(
   return named.every((item, i) => item.name !== name || (own?.list === list && own.index === i));
 }
 
-/** "slow 2": a base with the first number that makes the name unique. */
+/** Appends the first number that makes the name unique: "slow 2". */
 export function free_name(drawing: Drawing, list: ListName, base: string): string {
   for (let number = 1; ; ++number) {
     const name = `${base} ${number}`;
@@ -137,7 +137,7 @@ export function free_name(drawing: Drawing, list: ListName, base: string): strin
   }
 }
 
-/** Start of the robot: the first base station. */
+/** Pose in which the robot starts: the first base station. */
 export function start_of(
   drawing: Drawing,
 ): { x_m: number; y_m: number; heading_rad: number } | null {
@@ -148,10 +148,10 @@ export function start_of(
 }
 
 export function to_mm(value: number): number {
-  return Math.round(1000 * value) / 1000 + 0; // no -0
+  return Math.round(1000 * value) / 1000 + 0; // + 0 turns -0 into 0
 }
 
-/** Parses a drawing from JSON, of the service or a file. Throws an Error naming the faulty item. */
+/** Parses the JSON of the service or of a file. Throws an Error that names the faulty item. */
 export function parse_drawing(json: unknown): Drawing {
   const words = texts.draw.parse;
   if (!is_object(json)) throw new Error(words.no_drawing);
@@ -185,7 +185,7 @@ function numbers(value: unknown, fewest: number): number[] | null {
   return good && value.length <= 2 * mostCorners ? value : null;
 }
 
-// Null if a field is missing or out of range.
+// Returns null if a field is missing or out of range.
 function parse_item(list: ListName, fields: Fields): Item | null {
   const name = typeof fields.name === "string" ? fields.name : "";
   if (list === "places") {
