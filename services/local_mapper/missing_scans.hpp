@@ -1,4 +1,4 @@
-// Requests from a log's gateway the scans that it sent while this service was away.
+// Requests the scans that a log's gateway sent while this service was not running.
 #pragma once
 
 #include <chrono>
@@ -11,7 +11,7 @@
 
 namespace topogeo::local_mapper {
 
-/// Lives in the loop of its service.
+/// Must be used in the loop of its service only.
 class MissingScans {
  public:
   explicit MissingScans(service::Service& service);
@@ -19,10 +19,11 @@ class MissingScans {
   MissingScans(const MissingScans&) = delete;
   MissingScans& operator=(const MissingScans&) = delete;
 
-  /// Requests the scans from number `first` on of the log with that odometry epoch, repeatedly
-  /// until found(). False when that is in vain: no gateway takes such requests, or none answers.
+  /// Requests the scans from number `first` on, of the log with that odometry epoch, and repeats
+  /// the request until found(). Returns false when no gateway takes such requests, or none answers
+  /// in time.
   bool want(std::uint64_t odometry_epoch, std::uint64_t first);
-  /// The scans arrive, or are not needed any more.
+  /// Ends the requests, because the scans arrive or are not needed any more.
   void found();
 
  private:
@@ -35,9 +36,9 @@ class MissingScans {
   messaging::Writer<msg::ScanRequest> requests_;
   std::optional<msg::ScanRequest> wanted_;
   std::uint64_t sent_ = 0;
-  bool heard_by_nobody_ = false;  // the gateway was not known when the request was sent
+  bool heard_by_nobody_ = false;  // no gateway was matched when the request was sent
   Clock::time_point asked_;
-  Clock::time_point since_;    // of the first request for these scans
+  Clock::time_point since_;    // time of the first request for these scans
   Clock::time_point matched_;  // when requests last had a reader
   std::uint64_t timer_ = 0;
 };

@@ -1,4 +1,4 @@
-// A world with a robot whose laser and base are on serial lines, on the world's clock.
+// A world with a robot whose laser and base are emulated on serial lines, by the world's clock.
 #pragma once
 
 #include <cstdint>
@@ -21,23 +21,23 @@ enum class Device { kLaser, kBase };
 struct DeviceOptions {
   std::filesystem::path laser_port;  ///< link to create, or tcp://ADDRESS:PORT
   std::filesystem::path base_port;
-  simulation::BaseEmulatorSettings base;    ///< its seed is that of the robot
-  simulation::LaserEmulatorSettings laser;  ///< its seed is that of the robot
+  simulation::BaseEmulatorSettings base;    ///< its seed is replaced by the robot's
+  simulation::LaserEmulatorSettings laser;  ///< its seed is replaced by the robot's
   simulation::RobotOptions robot;
 };
 
 /// All times are nanoseconds of the world's clock and never go back.
 class SimulatedDevices {
  public:
-  /// The devices are switched on at time 0, with their ports plugged in. Throws like
-  /// SimulatedRobot, make_device_port(), DevicePort::plug and the emulators.
+  /// Switches the devices on at time 0, with their ports plugged in. Throws what SimulatedRobot,
+  /// make_device_port(), DevicePort::plug and the emulators throw.
   SimulatedDevices(world::World world, const DeviceOptions& options);
 
   /// Advances the world and the devices to `now_ns` and exchanges bytes with the ports.
   void run_until(std::int64_t now_ns);
 
-  /// The world stands still for this time, while the clocks of the devices go on. The base has not
-  /// heard its host meanwhile, so its watchdog waits, too.
+  /// Holds the world still for this time, while the clocks of the devices go on. The watchdog of
+  /// the base waits, too, because the base cannot hear its host meanwhile.
   void stand_still(std::int64_t duration_ns) {
     now_ns_ += duration_ns;
     base_->stand_still(duration_ns);
@@ -50,7 +50,7 @@ class SimulatedDevices {
     return device == Device::kLaser ? *laser_port_ : *base_port_;
   }
   [[nodiscard]] std::int64_t now_ns() const { return now_ns_; }
-  /// Bytes from the devices that were not read in time.
+  /// Number of bytes from the devices that were lost because nothing read them in time.
   [[nodiscard]] std::uint64_t bytes_lost() const { return bytes_lost_; }
 
  private:
@@ -66,8 +66,8 @@ class SimulatedDevices {
   std::uint64_t bytes_lost_ = 0;
 };
 
-/// Bits of the base's sixteen bumper switches, counter-clockwise from ahead, that a contact at
-/// `direction_rad` from the heading presses.
+/// The bumper switches that a contact at `direction_rad` from the heading presses: one bit for each
+/// of the base's sixteen switches, counter-clockwise from straight ahead.
 std::uint16_t bumper_bits(double direction_rad);
 
 }  // namespace topogeo::simulator
