@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "topogeo/devices/base_driver.hpp"
 #include "topogeo/geometry/odometry_track.hpp"
@@ -60,6 +61,12 @@ class BaseChannel {
   /// Empty until the first odometry.
   [[nodiscard]] std::optional<devices::OdometerState> odometer_state() const {
     return driver_->odometer_state();
+  }
+
+  /// Null: the base has none. They live as long as this object.
+  [[nodiscard]] devices::BodySensors* sonars() { return driver_->sonars(); }
+  [[nodiscard]] std::vector<devices::SonarMount> sonar_mounts() const {
+    return driver_->sonar_mounts();
   }
 
   [[nodiscard]] messaging::Writer<msg::Odometry>& odometry() { return odometry_; }

@@ -25,9 +25,10 @@ void describe_base_line(ConfigSchema& schema, DeviceFile::Base& base) {
     models.emplace_back(model.name, &model);
   }
   schema.add("base.model", &s.model, models, "what the base is (docs/devices.md has the table)");
-  schema.add("base.baud", &base.baud, 0U, 500'000U, "baud",
-             "rate of the line; 0: that of the model: 9600 for a B21, although one uses 38400, and "
-             "115200 for the others");
+  schema.add(
+      "base.baud", &base.baud, 0U, 500'000U, "baud",
+      "rate of the line; 0: that of the model: 9600 for a B21, although one uses 38400, 9600 for "
+      "a pioneer, and 115200 for the others");
   schema.add("base.parity", &s.line.parity,
              {{"none", Parity::kNone}, {"even", Parity::kEven}, {"odd", Parity::kOdd}},
              "parity of the line");
@@ -100,6 +101,19 @@ void describe_kobuki(ConfigSchema& schema, DeviceFile::Base& base) {
              "the heading of a kobuki follows its gyro; false: its wheels");
 }
 
+void describe_pioneer(ConfigSchema& schema, DeviceFile::Base& base) {
+  devices::PioneerSettings& p = base.settings.pioneer;
+  schema.add("base.pioneer_units_per_m", &p.units_per_m, 1.0, 1e6, "1/m",
+             "units of the position of a pioneer per metre: 1000 with ARCOS; others divide 1000 by "
+             "DistConvFactor of the maker's parameter file");
+  schema.add("base.pioneer_units_per_turn", &p.units_per_turn, 1.0, 1e6, "",
+             "units of the heading of a pioneer per turn; 4096 gives AngleConvFactor 0.001534 of "
+             "the maker's parameter files");
+  schema.add("base.pioneer_sonar_units_per_m", &p.sonar_units_per_m, 1.0, 1e6, "1/m",
+             "units of the sonars of a pioneer per metre: 1000 with ARCOS; others divide 1000 by "
+             "RangeConvFactor of the maker's parameter file");
+}
+
 void describe_base_motion(ConfigSchema& schema, DeviceFile::Base& base) {
   devices::BaseSettings& s = base.settings;
   schema.add("base.largest_linear_mps", &s.limits.linear_mps, 0.01, 2.0, "m/s",
@@ -148,9 +162,10 @@ void describe_base_states(ConfigSchema& schema, DeviceFile::Base& base) {
              "the same for rotation");
   schema.add("base.battery_period_s", &s.battery_period_s, 1.0, 3600.0, "s",
              "time between two requests for the voltage");
-  schema.add("base.battery_low_v", &base.battery_low_v, 0.0, 100.0, "V",
-             "the battery is low below this voltage; 0: that of the model: 44 for a B21, 13 for a "
-             "create2 (a guess), 14 for a kobuki, never for a microcontroller");
+  schema.add(
+      "base.battery_low_v", &base.battery_low_v, 0.0, 100.0, "V",
+      "the battery is low below this voltage; 0: that of the model: 44 for a B21, 13 for a "
+      "create2 (a guess), 14 for a kobuki, 11.75 for a pioneer, never for a microcontroller");
 }
 
 }  // namespace
@@ -161,6 +176,7 @@ void describe_base(DeviceFile::Base& base, ConfigSchema& schema) {
   describe_text_base(schema, base);
   describe_create(schema, base);
   describe_kobuki(schema, base);
+  describe_pioneer(schema, base);
   describe_base_motion(schema, base);
   describe_base_states(schema, base);
 }

@@ -290,10 +290,13 @@ ConfigSchema describe(DeviceFile& file) {
   describe_cola(schema, file.laser);
   describe_safety(schema, file.laser);
   describe_base(file.base, schema);
-  schema.add("body.sensors", &file.body,
-             {{"none", DeviceFile::Body::kNone}, {"b21", DeviceFile::Body::kB21}},
-             "sonars, infrared and tactile sensors; those of a real b21 cannot be read, because no "
-             "source documents their bus (docs/devices.md)");
+  schema.add(
+      "body.sensors", &file.body,
+      {{"none", BodySensorKind::kNone},
+       {"b21", BodySensorKind::kB21},
+       {"base", BodySensorKind::kBase}},
+      "sonars, infrared and tactile sensors; base: the sonars that a pioneer reports; those of "
+      "a real b21 cannot be read, because no source documents their bus (docs/devices.md)");
   schema.add("odometry.wait_s", &file.odometry_wait_s, 0.0, 1.0, "s",
              "longest time that a scan waits for the odometry after it; 0: the scan is published "
              "at once, with the last odometry extrapolated by its speeds");
@@ -347,11 +350,18 @@ DeviceConfig to_config(const DeviceFile& file) {
   base.error_delay_ticks = static_cast<std::uint16_t>(file.base.error_delay_ticks);
   base.torque.reset();
   if (file.base.torque >= 0) base.torque = static_cast<std::uint8_t>(file.base.torque);
-  config.body_sensors = file.body == DeviceFile::Body::kB21;
+  config.body_sensors = file.body;
+  base.pioneer.sonars = file.body == BodySensorKind::kBase;
   config.odometry_wait_ns = nanoseconds(file.odometry_wait_s);
   config.longest_extrapolation_ns = nanoseconds(file.longest_extrapolation_s);
   static_cast<void>(devices::make_laser_driver(config.laser));  // checks the settings
-  static_cast<void>(devices::make_base_driver(config.base));
+  const auto driver = devices::make_base_driver(config.base);
+  if (config.body_sensors == BodySensorKind::kBase &&
+      (config.base_port.empty() || driver->sonars() == nullptr)) {
+    throw std::invalid_argument(
+        "key 'body.sensors' = 'base': expected a base.port and a base.model "
+        "with sonars of its own");
+  }
   check(base);
   if (config.laser_port.empty() && config.base_port.empty()) {
     throw std::invalid_argument(

@@ -12,6 +12,9 @@
 
 namespace topogeo::sensor_gateway {
 
+/// Sonars, infrared and tactile sensors: of a B21, or the sonars that the base reports.
+enum class BodySensorKind : std::uint8_t { kNone, kB21, kBase };
+
 /// Same structure as the file; a device without a port does not exist.
 struct DeviceFile {
   struct Laser {
@@ -56,7 +59,7 @@ struct DeviceFile {
     std::uint32_t error_delay_ticks = 0;
     std::int32_t torque = -1;  ///< negative: left unchanged
   } base;
-  enum class Body { kNone, kB21 } body = Body::kNone;
+  BodySensorKind body = BodySensorKind::kNone;
   double odometry_wait_s = 0.0;
   double longest_extrapolation_s = 0.5;
 
@@ -73,7 +76,7 @@ struct DeviceConfig {
   devices::LaserSettings laser;
   std::string base_port;  ///< empty: no base
   devices::BaseSettings base;
-  bool body_sensors = false;  ///< sonars, infrared and tactile sensors of a B21
+  BodySensorKind body_sensors = BodySensorKind::kNone;
   std::int64_t odometry_wait_ns = 0;
   std::int64_t longest_extrapolation_ns = 0;
 };

@@ -78,11 +78,7 @@ DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& conf
         [this](const devices::LaserScan& scan) { show_base(scan); },
         [this](std::int64_t arrival_ns) { release(arrival_ns); });
   }
-  if (config.body_sensors) {
-    body_sensors_ = std::make_unique<devices::MspBodySensors>();
-    body_.emplace(service_, *body_sensors_, devices::b21_sonar_ring().mounts);
-    body_timer_ = service_.loop().add_timer(kBodyPeriod, [this] { read_body(); });
-  }
+  begin_body(config.body_sensors);
   timer_ = service_.loop().add_timer(kStatePeriod, [this] { publish_state(); });
   publish_state();
   messaging::ConnectedPrograms connected(scans_);
@@ -91,6 +87,17 @@ DeviceGateway::DeviceGateway(service::Service& service, const DeviceConfig& conf
                        std::vector<ReaderWait::Wanted>{{"scans", readers, connected}});
   reader_wait_->start([](const std::string& what) { spdlog::info("waiting for {}", what); },
                       [this] { gate_.open(); });
+}
+
+void DeviceGateway::begin_body(BodySensorKind kind) {
+  if (kind == BodySensorKind::kNone) return;
+  if (kind == BodySensorKind::kBase) {
+    body_.emplace(service_, *base_->sonars(), base_->sonar_mounts());
+  } else {
+    body_sensors_ = std::make_unique<devices::MspBodySensors>();
+    body_.emplace(service_, *body_sensors_, devices::b21_sonar_ring().mounts);
+  }
+  body_timer_ = service_.loop().add_timer(kBodyPeriod, [this] { read_body(); });
 }
 
 DeviceGateway::~DeviceGateway() {

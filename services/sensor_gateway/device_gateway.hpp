@@ -61,6 +61,7 @@ class DeviceGateway {
   /// False, with a fault, when the scan cannot be sent.
   bool publish(const scan::Scan& scan);
   void publish_state();
+  void begin_body(BodySensorKind kind);
   void read_body();
   /// Runs the loop until the readers have all data of the writer; false after `timeout`.
   template <class T>
@@ -88,8 +89,8 @@ class DeviceGateway {
   std::uint64_t release_timer_ = 0;      // runs while scans wait for odometry
   std::uint64_t body_timer_ = 0;         // of read_body
   std::unique_ptr<devices::BodySensors> body_sensors_;
-  std::optional<service::BodySensorPublisher> body_;
   std::optional<BaseChannel> base_;
+  std::optional<service::BodySensorPublisher> body_;  // may read the base
   std::optional<LaserChannel> laser_;
   std::optional<ReaderWait> reader_wait_;
 };

@@ -10,6 +10,7 @@
 #include "topogeo/devices/base_models.hpp"
 #include "topogeo/devices/create_protocol.hpp"
 #include "topogeo/devices/kobuki_protocol.hpp"
+#include "topogeo/devices/pioneer_protocol.hpp"
 
 #include "base_drive.hpp"
 #include "checks.hpp"
@@ -87,14 +88,46 @@ void check_kobuki_order(Bytes bytes) {
   require(reader.counters() == devices::KobukiCounters(), "an order is whole");
 }
 
+void check_pioneer_order(Bytes bytes) {
+  namespace command = devices::pioneer_command;
+  const devices::BaseLimits limits;
+  devices::PioneerReader reader;
+  reader.push(bytes);
+  while (const auto packet = reader.next()) {
+    const auto order = devices::pioneer_order(*packet);
+    require(order.has_value(), "an order is known");
+    const int size = std::abs(order->value.value_or(0));
+    if (order->command == command::kSpeed) {
+      require(size <= 1e3 * limits.linear_mps, "the speed is within the limits");
+    } else if (order->command == command::kTurn) {
+      require(size <= 58 * limits.angular_radps, "the turn is within the limits");
+    }
+  }
+  require(reader.counters() == devices::PioneerCounters(), "an order is whole");
+}
+
+/// Packets of the server are checked by the reports in them, too.
+void check_pioneer_bytes(Bytes bytes) {
+  check_decoder<devices::PioneerReader>(bytes);
+  devices::PioneerReader reader;
+  reader.push(bytes);
+  while (const auto packet = reader.next()) {
+    const auto report = devices::pioneer_report(*packet);
+    if (!report) continue;
+    require(devices::pioneer_report(devices::to_packet(*report)) == report,
+            "a report that was read can be written and read");
+  }
+}
+
 struct FuzzedBase {
   std::string_view model;
   void (*check_bytes)(Bytes bytes);
   void (*check_order)(Bytes order);
 };
-constexpr std::array<FuzzedBase, 2> kFuzzedBases{
+constexpr std::array<FuzzedBase, 3> kFuzzedBases{
     {{"create2", check_decoder<devices::CreateDecoder>, check_create_order},
-     {"kobuki", check_decoder<devices::KobukiDecoder>, check_kobuki_order}}};
+     {"kobuki", check_decoder<devices::KobukiDecoder>, check_kobuki_order},
+     {"pioneer", check_pioneer_bytes, check_pioneer_order}}};
 
 std::size_t drive(const FuzzedBase& base, Bytes bytes) {
   devices::BaseSettings settings;

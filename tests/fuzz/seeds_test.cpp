@@ -119,6 +119,9 @@ TEST(FuzzSeeds, ReachTheReports) {
   EXPECT_EQ(check_base_driver(content(seeds("base_driver") / "kobuki_drive")), 39U);
   EXPECT_GT(check_base_driver(content(seeds("base_driver") / "kobuki_stops")), 20U);
   EXPECT_EQ(check_base_driver(content(seeds("base_driver") / "kobuki_damaged")), 0U);
+  EXPECT_EQ(check_base_driver(content(seeds("base_driver") / "pioneer_drive")), 39U);
+  EXPECT_GT(check_base_driver(content(seeds("base_driver") / "pioneer_stops")), 20U);
+  EXPECT_EQ(check_base_driver(content(seeds("base_driver") / "pioneer_damaged")), 0U);
 }
 
 TEST(FuzzSeeds, ReachTheTelegrams) {

@@ -66,7 +66,7 @@ TEST_P(EachSimulatedBase, DrivesTheTourThroughSerialPortsAndMapsIt) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OneOfEachOtherFamily, EachSimulatedBase,
-                         testing::Values("microcontroller", "create2", "kobuki"),
+                         testing::Values("microcontroller", "create2", "kobuki", "pioneer"),
                          [](const auto& base) { return base.param; });
 
 TEST_P(EachSimulatedLaser, DrivesTheTourThroughSerialPortsAndMapsIt) {

@@ -7,6 +7,7 @@
 
 #include "topogeo/devices/create_driver.hpp"
 #include "topogeo/devices/kobuki_driver.hpp"
+#include "topogeo/devices/pioneer_driver.hpp"
 #include "topogeo/devices/rwi_driver.hpp"
 #include "topogeo/devices/text_base_driver.hpp"
 
@@ -27,6 +28,10 @@ std::unique_ptr<BaseDriver> make_create(const BaseSettings& settings) {
 
 std::unique_ptr<BaseDriver> make_kobuki(const BaseSettings& settings) {
   return std::make_unique<KobukiDriver>(settings);
+}
+
+std::unique_ptr<BaseDriver> make_pioneer(const BaseSettings& settings) {
+  return std::make_unique<PioneerDriver>(settings);
 }
 
 #define TOPOGEO_BASE(family, name, baud, battery_low_v, title) \

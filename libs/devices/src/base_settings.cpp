@@ -52,6 +52,9 @@ void check(const BaseSettings& settings) {
   in_range("ramp_mps", settings.ramp_mps, 0, kLargest);
   in_range("ramp_radps", settings.ramp_radps, 0, kLargest);
   in_range("battery_period_s", settings.battery_period_s, 0, kLargest);
+  in_range("pioneer.units_per_m", settings.pioneer.units_per_m, 0, 1e6);
+  in_range("pioneer.units_per_turn", settings.pioneer.units_per_turn, 0, 1e6);
+  in_range("pioneer.sonar_units_per_m", settings.pioneer.sonar_units_per_m, 0, 1e6);
   if ((settings.report_mask & kNeededFields) != kNeededFields) {
     throw std::invalid_argument("base settings: report_mask is " +
                                 std::to_string(settings.report_mask) + ", expected all bits of " +

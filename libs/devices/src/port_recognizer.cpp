@@ -12,6 +12,8 @@ namespace {
 
 /// Packets in a row that no other device sends by chance.
 constexpr std::size_t kEnoughPackets = 8;
+/// Reports of ten a second, which a search hears for half a second at most rates.
+constexpr std::size_t kEnoughReports = 3;
 /// The rate of the measurements tells an STL-19P from an LD19: the mean of 4,500 and 5,000 a
 /// second.
 constexpr double kStl19p_hz = 4750.0;
@@ -127,6 +129,7 @@ PortRecognizer::Found PortRecognizer::receive(std::span<const std::uint8_t> byte
   Found found = base_line(bytes);
   if (!found) found = create_frames(bytes);
   if (!found) found = kobuki_frames(bytes);
+  if (!found) found = pioneer_packets(bytes);
   if (!found) found = ldrobot_packets(bytes);
   if (!found) found = lds_packets(bytes);
   if (!found) found = ydlidar_packets(bytes);
@@ -162,6 +165,16 @@ PortRecognizer::Found PortRecognizer::kobuki_frames(std::span<const std::uint8_t
   while (kobuki_.next()) ++kobuki_frames_;
   if (kobuki_frames_ < static_cast<int>(kEnoughPackets)) return std::nullopt;
   return RecognizedDevice{DeviceKind::kBase, "kobuki", line_};
+}
+
+/// A Pioneer whose last program was killed still reports.
+PortRecognizer::Found PortRecognizer::pioneer_packets(std::span<const std::uint8_t> bytes) {
+  pioneer_.push(bytes);
+  while (const auto packet = pioneer_.next()) {
+    if (pioneer_report(*packet)) ++pioneer_reports_;
+  }
+  if (pioneer_reports_ < static_cast<int>(kEnoughReports)) return std::nullopt;
+  return RecognizedDevice{DeviceKind::kBase, "pioneer", line_};
 }
 
 PortRecognizer::Found PortRecognizer::ldrobot_packets(std::span<const std::uint8_t> bytes) {

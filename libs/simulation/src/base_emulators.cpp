@@ -4,6 +4,7 @@
 #include "topogeo/simulation/create_emulator.hpp"
 #include "topogeo/simulation/kobuki_emulator.hpp"
 #include "topogeo/simulation/mcp_emulator.hpp"
+#include "topogeo/simulation/pioneer_emulator.hpp"
 #include "topogeo/simulation/text_base_emulator.hpp"
 
 namespace topogeo::simulation {
@@ -40,6 +41,11 @@ std::unique_ptr<BaseEmulator> emulate_create(const BaseEmulatorSettings& setting
 std::unique_ptr<BaseEmulator> emulate_kobuki(const BaseEmulatorSettings& settings,
                                              std::int64_t now_ns) {
   return std::make_unique<KobukiEmulator>(on_line<KobukiEmulatorSettings>(settings), now_ns);
+}
+
+std::unique_ptr<BaseEmulator> emulate_pioneer(const BaseEmulatorSettings& settings,
+                                              std::int64_t now_ns) {
+  return std::make_unique<PioneerEmulator>(on_line<PioneerEmulatorSettings>(settings), now_ns);
 }
 
 using MakeBaseEmulator = std::unique_ptr<BaseEmulator> (*)(const BaseEmulatorSettings&,

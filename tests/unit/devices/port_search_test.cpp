@@ -148,7 +148,7 @@ TEST_P(EachBaseOnAPort, NeverMoves) {
     if (!speaks) {
       // It obeys no question at any rate. An RWI base shows its own rate by its echo.
       EXPECT_EQ(port.why_none(),
-                model.family == "create" || baud == 57'600
+                model.family != "rwi" || baud == 57'600
                     ? "sends nothing and answers no question"
                     : "echoes what it receives, as an RWI B21 does (base.model: rwi_b21)");
       continue;
@@ -160,10 +160,12 @@ TEST_P(EachBaseOnAPort, NeverMoves) {
   }
 }
 
+class EachBaseThatReportsOn : public testing::TestWithParam<std::string> {};
+
 // It may move, and is not asked.
-TEST(PortSearch, HearsACreateWhoseProgramWasKilled) {
+TEST_P(EachBaseThatReportsOn, IsHeardAfterItsProgramWasKilled) {
   simulation::BaseEmulatorSettings emulated_base;
-  emulated_base.model = &base_model("create2");
+  emulated_base.model = &base_model(GetParam());
   emulated_base.baud = 115'200;
   const auto base = simulation::make_base_emulator(emulated_base);
   BaseSettings settings;
@@ -181,10 +183,13 @@ TEST(PortSearch, HearsACreateWhoseProgramWasKilled) {
   later.plug_in();
   ASSERT_TRUE(later.run_until(kLongestSearch_ns, [&] { return port.done(); }));
   ASSERT_TRUE(port.device()) << port.why_none();
-  EXPECT_EQ(port.device()->model, "create2");
+  EXPECT_EQ(port.device()->model, GetParam());
   EXPECT_FALSE(port.asked());
   EXPECT_EQ(written, 0U);
 }
+
+INSTANTIATE_TEST_SUITE_P(All, EachBaseThatReportsOn, testing::Values("create2", "pioneer"),
+                         [](const auto& base) { return base.param; });
 
 std::vector<std::string> names_of_bases() {
   std::vector<std::string> names;

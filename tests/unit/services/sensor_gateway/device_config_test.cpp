@@ -186,6 +186,14 @@ TEST(DeviceConfig, ThePageOfDevicesHasARowForEachBase) {
   }
 }
 
+TEST(DeviceConfig, SonarsOfTheBaseFireOnlyIfTheyAreRead) {
+  const std::string base = "base: {port: /dev/b, model: pioneer}\n";
+  EXPECT_FALSE(config_of(base).base.pioneer.sonars);
+  const DeviceConfig config = config_of(base + "body.sensors: base\n");
+  EXPECT_TRUE(config.base.pioneer.sonars);
+  EXPECT_EQ(config.body_sensors, BodySensorKind::kBase);
+}
+
 TEST(DeviceConfig, MistakesNameTheKey) {
   const auto why = [](const std::string& text) -> std::string {
     try {
@@ -207,6 +215,8 @@ TEST(DeviceConfig, MistakesNameTheKey) {
   EXPECT_THAT(why("base.port: /dev/b\nbase.counts_per_m: -1\n"), HasSubstr("base.counts_per_m"));
   EXPECT_THAT(why("base.port: /dev/b\nbase.command_timeout_s: 2\n"),
               HasSubstr("base.command_timeout_s"));
+  EXPECT_THAT(why("base: {port: /dev/b, model: kobuki}\nbody.sensors: base\n"),
+              HasSubstr("body.sensors"));
   EXPECT_THAT(why("odometry.wait_s: 0\n"), HasSubstr("at least one port"));
   EXPECT_THAT(why("laser.port: /dev/a\nbase.port: /dev/a\n"), HasSubstr("another port"));
 }

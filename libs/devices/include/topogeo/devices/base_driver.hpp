@@ -13,6 +13,7 @@
 #include "topogeo/devices/base_odometer.hpp"
 #include "topogeo/devices/base_settings.hpp"
 #include "topogeo/devices/base_status.hpp"
+#include "topogeo/devices/body_sensors.hpp"
 #include "topogeo/devices/serial_driver.hpp"
 
 namespace topogeo::devices {
@@ -56,6 +57,10 @@ class BaseDriver : public SerialDriver {
   /// Odometry since the last call; stamps increase strictly over the driver's whole life.
   [[nodiscard]] virtual std::vector<BaseOdometry> take_odometry() = 0;
   [[nodiscard]] virtual const BaseStatus& status() const = 0;
+  /// Sonars that the base reads and reports, with their places; null: none. They live as long as
+  /// the driver.
+  [[nodiscard]] virtual BodySensors* sonars() { return nullptr; }
+  [[nodiscard]] virtual std::vector<SonarMount> sonar_mounts() const { return {}; }
   /// Continues the odometry of an earlier driver, see BaseOdometer. A driver whose base does not
   /// show whether it kept counting ignores it.
   virtual void resume_odometry(const OdometerState& state) { static_cast<void>(state); }

@@ -8,6 +8,7 @@
 #include "topogeo/devices/kobuki_settings.hpp"
 #include "topogeo/devices/mcp_binary.hpp"
 #include "topogeo/devices/mcp_units.hpp"
+#include "topogeo/devices/pioneer_settings.hpp"
 #include "topogeo/devices/serial_driver.hpp"
 #include "topogeo/devices/text_base_settings.hpp"
 #include "topogeo/geometry/reaction_times.hpp"
@@ -42,6 +43,7 @@ struct BaseSettings {
   TextBaseSettings text{};  ///< of a microcontroller
   CreateSettings create{};  ///< of a Create 2
   KobukiSettings kobuki{};
+  PioneerSettings pioneer{};
   /// BaseDriver::set_limits cannot exceed them.
   BaseLimits limits{};
 

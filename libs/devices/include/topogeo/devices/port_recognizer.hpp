@@ -16,6 +16,7 @@
 #include "topogeo/devices/kobuki_protocol.hpp"
 #include "topogeo/devices/ldrobot_packet.hpp"
 #include "topogeo/devices/lds_packet.hpp"
+#include "topogeo/devices/pioneer_protocol.hpp"
 #include "topogeo/devices/rplidar_decoder.hpp"
 #include "topogeo/devices/scip_protocol.hpp"
 #include "topogeo/devices/serial_driver.hpp"
@@ -60,6 +61,7 @@ class PortRecognizer {
   [[nodiscard]] Found base_line(std::span<const std::uint8_t> bytes);
   [[nodiscard]] Found kobuki_frames(std::span<const std::uint8_t> bytes);
   [[nodiscard]] Found create_frames(std::span<const std::uint8_t> bytes);
+  [[nodiscard]] Found pioneer_packets(std::span<const std::uint8_t> bytes);
   [[nodiscard]] Found ldrobot_packets(std::span<const std::uint8_t> bytes);
   [[nodiscard]] Found lds_packets(std::span<const std::uint8_t> bytes);
   [[nodiscard]] Found ydlidar_packets(std::span<const std::uint8_t> bytes);
@@ -77,6 +79,8 @@ class PortRecognizer {
   int create_frames_ = 0;
   KobukiDecoder kobuki_;
   int kobuki_frames_ = 0;
+  PioneerReader pioneer_;
+  int pioneer_reports_ = 0;
   LdDecoder ldrobot_;
   std::vector<LdPacket> ld_packets_;
   LdsDecoder xv11_{kXv11, LdsChecksum::kDrop};

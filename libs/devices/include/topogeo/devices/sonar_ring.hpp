@@ -24,4 +24,9 @@ inline constexpr double kB21Radius_m = 0.267;
 /// first one left of ahead.
 std::vector<SonarMount> b21_sonars();
 
+/// The 16 of a Pioneer 3-DX, by their numbers: eight of the front array from the left to the right,
+/// eight of the rear array (maker's parameter files). The arrays of other Pioneers lie at the same
+/// angles, and up to 4 cm elsewhere.
+std::vector<SonarMount> pioneer_sonars();
+
 }  // namespace topogeo::devices
