@@ -41,11 +41,13 @@ class EachBaseModel : public testing::TestWithParam<std::string> {
   static BaseSettings settings_of(const std::string& name) {
     BaseSettings settings;
     settings.model = &base_model(name);
+    settings.line.baud = settings.model->baud;
     return settings;
   }
   static simulation::BaseEmulatorSettings emulated(const std::string& name) {
     simulation::BaseEmulatorSettings settings;
     settings.model = &base_model(name);
+    settings.baud = settings.model->baud;
     return settings;
   }
 
