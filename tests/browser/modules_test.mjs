@@ -177,6 +177,13 @@ test("numbers have units, and what is not known is a dash", () => {
   );
 });
 
+test("a time of another day has its day, so that an old alarm does not look like one of today", () => {
+  const at = (day, hour) => new Date(2026, 10, day, hour, 5, 9).getTime() / 1000;
+  assert.equal(format.clock(at(30, 14), at(30, 23)), "14:05:09");
+  assert.equal(format.clock(at(30, 14), at(31, 0)), "30/11/2026 14:05:09");
+  assert.equal(format.clock(at(30, 14), at(60, 14)), "30/11/2026 14:05:09");
+});
+
 /** A square room of 4 x 4 m seen from its middle: points every 5 cm. */
 function room_points() {
   const points = [];

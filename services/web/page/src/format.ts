@@ -61,9 +61,11 @@ export function memory(bytes: Maybe): string {
   return known(bytes) ? `${(bytes / 1e6).toFixed(0)} MB` : noValue;
 }
 
-/** Time of day of seconds since 1970. */
-export function clock(time_s: number): string {
-  return new Date(1000 * time_s).toLocaleTimeString("en-GB");
+/** Time of day of seconds since 1970, after the day unless that is the day of now_s. */
+export function clock(time_s: number, now_s: number = Date.now() / 1000): string {
+  const date = new Date(1000 * time_s);
+  const is_today = date.toDateString() === new Date(1000 * now_s).toDateString();
+  return is_today ? date.toLocaleTimeString("en-GB") : moment(time_s);
 }
 
 /** Day and time for seconds since 1970; seconds for a source that counts from elsewhere. */

@@ -100,13 +100,14 @@ export function report_page(data: ReportData): string {
       [words.driven, words.distance(drive.length_m, drive.time_s)],
     );
   }
-  const row = ({ time_s, text }: LogEvent): Row => [clock(time_s), sentence(translated(text))];
+  const at = (time_s: number) => clock(time_s, data.made_s);
+  const row = ({ time_s, text }: LogEvent): Row => [at(time_s), sentence(translated(text))];
   const of_goals = data.events.filter(({ text }) => /^(goal|arrived|waits \d+ s at|explore[sd])\b/.test(text));
   const trouble = data.events.filter(({ level }) => level !== "info");
   const alarms = [...data.alarms].reverse().map((alarm): Row => {
     const { acknowledged_by: who, acknowledged_s: when } = alarm;
-    const done = who ? ` ${sentence(texts.alarms.acknowledged(who, clock(when ?? 0)))}` : "";
-    return [clock(alarm.first_s), `${alarm_text(alarm)}${done}`];
+    const done = who ? ` ${sentence(texts.alarms.acknowledged(who, at(when ?? 0)))}` : "";
+    return [at(alarm.first_s), `${alarm_text(alarm)}${done}`];
   });
   const title = escaped(`${words.title}: ${data.robot}`);
   const picture = data.picture

@@ -6,8 +6,8 @@ export const spanish_alarm_texts: Texts["alarms"] = {
   title: "Alarmas", none: "No ha habido alarmas.", acknowledge: "Confirmar",
   acknowledge_all: (n) => `Confirmar las ${n}`, acknowledge_one: (text) => `Confirmar: ${text}`,
   all: (n) => `Las ${n}`, show: (n) => `Ver las ${n} alarmas`,
-  repeated: (times, last) => `${times} veces, la última a las ${last}`,
-  acknowledged: (who, when) => `Confirmada por ${who} a las ${when}`, done: "La alarma está confirmada.",
+  repeated: (times, last) => `${times} veces, la última: ${last}`,
+  acknowledged: (who, when) => `Confirmada por ${who}: ${when}`, done: "La alarma está confirmada.",
   sources: { base: "tracción", laser: "láser", navigator: "navegador", localizer: "localizador" },
 };
 
