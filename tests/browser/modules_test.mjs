@@ -492,6 +492,18 @@ test("no language lacks a text, and none is English", () => {
   }
 });
 
+test("each state of a laser and a drive unit has a word in each language", () => {
+  const file = join(process.env.TOPOGEO_SOURCE, "services/web/channels/protocol_names.cpp");
+  const code = readFileSync(file, "utf8");
+  for (const [type, texts_of] of [["LaserState", "laser_states"], ["BaseState", "base_states"]]) {
+    const words = code.match(new RegExp(`name_of\\(msg::${type} [^=]*= \\{([^}]*)\\}`))[1];
+    const states = words.match(/\w+/g).sort();
+    for (const [language, { now }] of Object.entries(languages)) {
+      assert.deepEqual(Object.keys(now[texts_of] ?? {}).sort(), states, `${language}: ${type}`);
+    }
+  }
+});
+
 // Sources of the reasons and events that reach the page. A new reason needs a line in spanish_reasons.ts.
 const kReasonSources = {
   "libs/navigation/src": [

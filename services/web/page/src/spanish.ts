@@ -119,6 +119,9 @@ export const spanish: Texts = {
       emergency_stop: "parada de emergencia", halted: "retenida", watchdog_expired: "parada: no llegaron órdenes",
       bumped: "ha chocado", joystick: "movida con su mando", motors_off: "motores apagados",
     },
+    laser_states: {
+      running: "en marcha", offline: "no conectado", starting: "arranca", fault: "no envía medidas útiles",
+    },
     not_heard: "no conectado", simulated: "Posición verdadera del robot simulado",
     simulated_hint:
       "Coordenadas del archivo del mundo. La posición y el rumbo de arriba son los del mapa, que empieza donde " +

@@ -157,6 +157,12 @@ export const english = {
       joystick: "moved by its joystick",
       motors_off: "motors off",
     } as Record<string, string>,
+    laser_states: {
+      running: "running",
+      offline: "not connected",
+      starting: "starting",
+      fault: "sends no usable scans",
+    } as Record<string, string>,
     not_heard: "not connected",
     simulated: "True position of the simulated robot",
     simulated_hint:

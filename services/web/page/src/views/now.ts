@@ -97,7 +97,9 @@ export class NowView implements ViewPart {
     this.show_device(
       words.laser,
       "laser",
-      laser && `${laser.state}, ${format.rate(laser.scans_per_s)}${because(laser.reason)}`,
+      laser &&
+        `${words.laser_states[laser.state] ?? laser.state}, ` +
+          `${format.rate(laser.scans_per_s)}${because(laser.reason)}`,
     );
     const base = channels.value("base");
     this.show_device(
