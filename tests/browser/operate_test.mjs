@@ -299,15 +299,17 @@ for (const [width, height] of [[320, 568], [390, 844], [844, 390], [1920, 1080],
     for (const view of ["now", "send", "correct", "understand", "draw", "time"]) {
       await page.click(`#tab-${view}`);
       // All at once, because a busy machine may change the header's text meanwhile.
-      const [map, panel, controls, wide] = await page.evaluate(() => {
+      const [map, panel, controls, wide, hidden] = await page.evaluate(() => {
         const box = (element) => element.getBoundingClientRect().toJSON();
         const one = (selector) => box(document.querySelector(selector));
         const all = [...document.querySelectorAll(".controls .control")].map(box);
-        return [one(".stage"), one("#panel"), all, document.documentElement.scrollWidth];
+        const { scrollWidth, clientWidth } = document.querySelector("#panel");
+        return [one(".stage"), one("#panel"), all, document.documentElement.scrollWidth, scrollWidth - clientWidth];
       });
       assert.ok(map.height >= 0.4 * height || map.width >= 0.4 * width, `${view}: ${JSON.stringify(map)}`);
       assert.ok(map.height >= 0.3 * height && map.width >= 0.3 * width, `${view}: ${JSON.stringify(map)}`);
       assert.ok(wide <= width, `${view} is ${wide} wide`);
+      assert.equal(hidden, 0, `${view}: pixels beyond the edge of the panel`);
       for (const at of controls) {
         assert.ok(at.top >= map.top && at.bottom <= map.bottom + 1, `${view}: ${JSON.stringify([at, map])}`);
       }
