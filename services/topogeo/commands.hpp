@@ -1,13 +1,13 @@
-// The subcommands of topogeo. Each function adds one to the program; when the command line names
-// it, it runs and sets `exit_code` (service::ExitCode, or 128 + signal when interrupted), or throws
-// service::UsageError, service::BadInputError or std::runtime_error.
+// The subcommands of topogeo. Each function adds a subcommand to the program. When the command line
+// names this subcommand, it runs and sets `exit_code` (service::ExitCode, or 128 + signal when
+// interrupted), or throws service::UsageError, service::BadInputError or std::runtime_error.
 #pragma once
 
 #include "topogeo/command_line/command_line.hpp"
 
 namespace topogeo::cli {
 
-/// Exit code of a program ended by a signal, minus the signal number, as in shells.
+/// Exit code of a program that a signal ended, less the number of the signal, as in shells.
 inline constexpr int kSignalBase = 128;
 
 void add_run_command(command_line::Command& app, int& exit_code);

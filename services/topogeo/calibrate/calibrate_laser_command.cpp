@@ -41,7 +41,7 @@ struct CalibrateLaserOptions {
 };
 
 /// With a wrong mounting the laser moves differently from the odometry. These variances, about a
-/// decimetre for each radian of turn and each metre of path, let matches be found nevertheless.
+/// decimetre for each radian of turn and each metre of path, allow matches in spite of that.
 constexpr double kTurnShiftVariance = 0.02;  // m2/rad
 constexpr double kSidewaysVariance = 0.01;   // m2/m
 
@@ -80,8 +80,8 @@ Found calibrate_once(const CalibrateLaserOptions& options, const pipeline::Confi
   return found;
 }
 
-/// Matches the scans again with the mounting found, until it settles: with a wrong mounting the
-/// best matches, those of long paths and large turns, are missed.
+/// Matches the scans again with the mounting found, until it changes little. A wrong mounting
+/// misses the best matches, which are those of long paths and large turns.
 Found calibrate_laser(const CalibrateLaserOptions& options, const pipeline::Config& config) {
   constexpr int kMostRounds = 6;
   constexpr double kSmallShift_m = 0.003;
@@ -123,8 +123,8 @@ std::string laser_yaml(const LaserCalibration& laser) {
                      laser.y_m.value, laser.yaw_rad.value);
 }
 
-/// Starts at the mounting that the scans show if it is too far from the configured one to be found
-/// from there.
+/// Chooses the start of the search: the mounting that the scans show if the configured one is too
+/// far from it.
 void start_near(const localization::FoundMounting& shown, pipeline::LoadedConfig& config,
                 recording::TopicChoice& topics) {
   constexpr double kWithinReach_rad = 15.0 / kMountingDegrees;
@@ -136,7 +136,8 @@ void start_near(const localization::FoundMounting& shown, pipeline::LoadedConfig
   pipeline::mount_laser(config.config, shown.T_robot_laser);
 }
 
-/// Adds what the search shows of the parts that the refinement leaves open: it needs less driving.
+/// Adds the search's values for the parts that the refinement leaves open, because the search needs
+/// less driving.
 LaserCalibration completed(LaserCalibration laser, const localization::FoundMounting& shown) {
   const Pose2& T = shown.T_robot_laser;
   if (shown.heading_known && !laser.yaw_rad.known) {
@@ -149,7 +150,7 @@ LaserCalibration completed(LaserCalibration laser, const localization::FoundMoun
   return laser;
 }
 
-/// Refines, or prints why the search alone must do.
+/// Refines the mounting, or prints the reason why only the result of the search is available.
 LaserCalibration calibrate_from(const localization::FoundMounting& shown,
                                 const CalibrateLaserOptions& options,
                                 const pipeline::Config& config) {

@@ -38,7 +38,7 @@ struct CalibrateOptions {
   std::optional<std::filesystem::path> out;
 };
 
-/// All inputs, read before the work starts.
+/// All inputs, which are read before the work starts.
 struct CalibrationInputs {
   pipeline::LoadedConfig config;
   OpenLog log;
@@ -108,7 +108,7 @@ OdometryCalibration calibrate(const CalibrateOptions& options, const Calibration
   }
 }
 
-/// Text for people and the file: three digits, more than the accuracy.
+/// Text for people and the file. Its three digits are more than the accuracy.
 std::string digits(double value) {
   return fmt::format("{:.3g}", value);
 }

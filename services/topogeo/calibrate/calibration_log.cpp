@@ -146,7 +146,7 @@ std::string configuration_with(const std::string& block, const std::string& comm
   pipeline::Config values;
   const support::ConfigSchema schema = pipeline::describe(values);
   support::load_yaml_file(*config, schema);
-  values.local_mapper.T_robot_laser = T_robot_laser;  // from the log, if the file leaves it open
+  values.local_mapper.T_robot_laser = T_robot_laser;  // the log's, if the file has none
   support::load_yaml_text(block, "the values found", schema);
   std::ostringstream whole;
   support::write_yaml(schema, whole);

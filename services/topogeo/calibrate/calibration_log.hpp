@@ -26,7 +26,7 @@ struct OpenLog {
   recording::LogReader reader;
   std::uint64_t laser_lines = 0;  ///< upper bound of the number of usable scans
 };
-/// Throws service::BadInputError.
+/// Opens the log. Throws service::BadInputError if it cannot be read.
 OpenLog open_log(const std::filesystem::path& path, const scan::CarmenLogOptions& options,
                  const recording::TopicChoice& topics);
 
@@ -43,8 +43,8 @@ class Bar {
   std::uint64_t done_ = 0;
 };
 
-/// Makes the local maps of the log, of its longest part if the odometry breaks: a motion across a
-/// break measures nothing.
+/// Makes the local maps of the log. If the odometry breaks, only its longest part is used, because
+/// a motion across a break measures nothing.
 localization::LocalMaps make_maps(const pipeline::Config& config, OpenLog& log);
 
 struct MatchedLog {
@@ -55,15 +55,15 @@ struct MatchedLog {
 /// again and adds nothing about single steps.
 MatchedLog match_log(const pipeline::Config& config, OpenLog& log);
 
-/// "52 stops, 41.3 m of path, 30.2 rad of turn".
+/// Text for people: "52 stops, 41.3 m of path, 30.2 rad of turn".
 std::string describe_drive(const localization::LocalMaps& maps);
-/// "312 matches of stops up to 6 m apart; left out: 3 that ..."
+/// Text for people: "312 matches of stops up to 6 m apart; left out: 3 that ...".
 std::string describe_matches(const pipeline::Config& config,
                              const localization::MatchedMotions& matched);
 
-/// A configuration for `topogeo map`: the block alone after a comment, or with `config` all of its
-/// values, the laser mounting unchanged, with the block's values replaced. Throws
-/// std::runtime_error naming file and line.
+/// Text of a configuration for `topogeo map`. Without `config` it is the block after a comment,
+/// else all values of `config`, with those of the block replaced and the laser mounting unchanged.
+/// Throws std::runtime_error naming file and line.
 std::string configuration_with(const std::string& block, const std::string& comment,
                                const std::optional<std::filesystem::path>& config,
                                const geometry::Pose2& T_robot_laser);

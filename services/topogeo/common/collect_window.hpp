@@ -9,14 +9,15 @@ namespace topogeo::cli {
 /// seconds, as support::Patience counts it.
 class CollectWindow {
  public:
-  static constexpr double kCollect_s = 1.2;  ///< at least: two periods, plus discovery
-  /// It continues until none has come for more than a period: a busy machine discovers some later.
+  static constexpr double kCollect_s = 1.2;  ///< shortest wait: two periods, plus discovery
+  /// The wait continues until no service has come for more than a period, because a busy machine
+  /// discovers some late.
   static constexpr double kSettled_s = 0.8;
 
-  /// It ends after `longest_s`, whatever the count.
+  /// The wait ends after `longest_s`, regardless of the count.
   explicit CollectWindow(double longest_s) : longest_s_(longest_s) {}
 
-  /// `count`: number heard so far.
+  /// `count`: number of services heard so far.
   [[nodiscard]] bool goes_on(double waited_s, std::size_t count) {
     if (count != count_) changed_s_ = waited_s;
     count_ = count;

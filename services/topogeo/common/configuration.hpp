@@ -12,10 +12,10 @@ namespace topogeo::cli {
 
 /// The configuration of a file, or the defaults. Throws service::UsageError if it is unusable.
 pipeline::LoadedConfig load(const std::optional<std::filesystem::path>& file);
-/// The same without where its values come from.
+/// The same, without the sources of its values.
 pipeline::Config read_config(const std::optional<std::filesystem::path>& file);
 
-/// Prints a line each on stderr; many that are alike become one.
+/// Prints each note as a line on stderr; many notes that are alike become one line.
 void print_notes(const std::vector<std::string>& notes);
 
 }  // namespace topogeo::cli

@@ -54,7 +54,7 @@ struct Collected {
 };
 
 /// Receives until all publishers of a status have been heard, then shows them; with --watch
-/// repeatedly, until Ctrl-C. `count`: number heard so far.
+/// repeatedly, until Ctrl-C. `count`: number of services heard so far.
 Collected collect_and_show(const DomainView& view, messaging::EventLoop& loop,
                            const std::function<std::size_t()>& count,
                            const std::function<void()>& show);

@@ -1,4 +1,4 @@
-// Services with other settings than those of a command that hears nothing.
+// Finds services whose settings differ from those of a command that hears none.
 #pragma once
 
 #include <span>

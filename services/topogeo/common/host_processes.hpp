@@ -1,5 +1,5 @@
-// The services of this project that run as processes on this host, whether they are heard or not:
-// one stopped by a signal or a debugger does not answer discovery.
+// The services of this project that run as processes on this host. These include services that
+// discovery does not find, for example because a signal or a debugger has stopped them.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ struct HostProcess {
   std::string service;       ///< "localizer"
   std::uint32_t domain = 0;  ///< from its command line, else from its environment if readable
   std::string partition;     ///< from its command line, else the default
-  bool stopped = false;      ///< by a signal or a debugger
+  bool stopped = false;      ///< whether a signal or a debugger has stopped it
   double age_s = 0.0;        ///< since its start
   std::string robot{};       ///< from its command line, else its environment; may be empty
 };

@@ -28,7 +28,7 @@ void add(const Properties& unit, HostUnits& units) {
   name.resize(name.size() - kOfServices.size());
   const std::string state = value("ActiveState");
   const std::string restarts = value("NRestarts");
-  // Between two starts it waits, and then looks like a unit that is started for the first time.
+  // Between two starts the unit waits, and looks like a unit that is started for the first time.
   const bool starts_again = state == "activating" && !restarts.empty() && restarts != "0";
   if (starts_again || value("SubState").starts_with("auto-restart")) {
     units.idle.push_back({name, true});

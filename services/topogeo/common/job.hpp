@@ -27,10 +27,10 @@ struct JobOptions {
   std::filesystem::path out;
   std::optional<std::filesystem::path> config;
   std::string robot_id = "robot";
-  std::optional<std::filesystem::path> reference;  ///< trajectory to compare with
+  std::optional<std::filesystem::path> reference;  ///< true trajectory for comparison
   bool map_may_be_grid = false;                    ///< --map may be a grid, which gets stops
-  std::optional<std::filesystem::path> map;        ///< map to localize in; none: a map is made
-  std::optional<std::filesystem::path> continued;  ///< map to extend; none: a new one
+  std::optional<std::filesystem::path> map;        ///< map to localize in; empty: a map is made
+  std::optional<std::filesystem::path> continued;  ///< map to extend; empty: a new map
   std::optional<std::string> initial_pose;         ///< "x,y,degrees" in either map
   bool overlaps = false;  ///< in the report, even if the configuration does not ask for them
 };
@@ -79,7 +79,7 @@ struct Job {
   std::uint64_t laser_lines = 0;  ///< upper bound of the number of usable scans
 };
 
-/// The same for a log, which it opens; also makes the output directory. Throws the same, and
+/// Opens a log, checks the same and makes the output directory. Throws the same, and
 /// std::runtime_error for the directory.
 Job prepare(JobOptions options);
 
@@ -106,7 +106,7 @@ struct MappingFacts {
   std::set<results::Remedy> tried{};
 };
 
-/// Judges a new map, whose report has its counts, for print_summary.
+/// Grades a new map by the counts of its report, for print_summary.
 void add_quality(storage::Report& report, const Job& job, const storage::MapDocument& document,
                  const MappingFacts& facts = {});
 

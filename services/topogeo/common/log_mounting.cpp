@@ -15,7 +15,7 @@
 namespace topogeo::cli {
 namespace {
 
-/// Where nothing states it.
+/// Mounting if nothing states it.
 MountingChoice take_found(const localization::FoundMounting& found, pipeline::LoadedConfig& config,
                           recording::TopicChoice& topics) {
   std::cerr << "topogeo: " << pipeline::text_of(found) << '\n';
@@ -25,8 +25,7 @@ MountingChoice take_found(const localization::FoundMounting& found, pipeline::Lo
   return {found.heading_known, found, {}};
 }
 
-/// The time by which the stamps of scans are later than those of odometry, where the motions of a
-/// recording show one.
+/// Delay of the stamps of scans against those of odometry, if the motions of a recording show one.
 std::optional<localization::ScanDelay> scan_delay(const recording::LogReader& reader,
                                                   const pipeline::DriveMotions& drive,
                                                   bool upside_down) {

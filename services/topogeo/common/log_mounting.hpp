@@ -1,4 +1,4 @@
-// Where the laser of a log is on its robot: as stated, or as the scans show it.
+// The mounting of the laser of a log, as stated or as the scans show it.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@
 
 namespace topogeo::cli {
 
-/// Where the laser is, and how that is known.
+/// The mounting of the laser, and its source.
 struct MountingChoice {
   bool known = false;  ///< stated by flag, configuration or log, or found with its heading
   std::optional<localization::FoundMounting> found;  ///< by a search, where nothing states it
@@ -20,13 +20,13 @@ struct MountingChoice {
 };
 
 /// Takes the laser mounting from --laser, the configuration, the log or, where a recording does not
-/// state it, from its scans. Reports that, scans that contradict the log, and the chosen topics of
-/// a recording on stderr. `topics` get what else reading the log needs to know of the mounting.
-/// Throws service::BadInputError when the log cannot be read.
+/// state it, from its scans. Reports the mounting, scans that contradict the log, and the chosen
+/// topics of a recording on stderr. Completes `topics` by the facts on the mounting that a reader
+/// of the log needs. Throws service::BadInputError when the log cannot be read.
 MountingChoice choose_mounting(pipeline::LoadedConfig& config, const std::filesystem::path& log,
                                recording::TopicChoice& topics);
 
-/// Puts the laser there in a configuration.
+/// Sets the mounting in a configuration.
 void set_mounting(pipeline::LoadedConfig& config, const geometry::Pose2& T_robot_laser);
 
 /// The mounting by the scans and the odometry of a log; unknown without odometry. Throws

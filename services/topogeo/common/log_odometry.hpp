@@ -16,11 +16,11 @@ JobOptions without_odometry(const JobOptions& options);
 /// from the scans. Throws service::BadInputError when the log cannot be read.
 pipeline::ScanFeed open_feed(Job& job);
 
-/// The same for another job with the same log: with odometry from the scans if its configuration
-/// asks for that, else with that of the first feed.
+/// The scans of another job with the same log. Their odometry is from the scans if the
+/// configuration of that job requires it, else that of the first feed.
 pipeline::ScanFeed open_feed_again(Job& job, const pipeline::ScanFeed& first);
 
-/// Reports on stderr what became of odometry from the scans, once the log is read. Throws
+/// Reports the result of odometry from the scans on stderr, once the log is read. Throws
 /// service::BadInputError if the scans are too sparse for it.
 void check_tracked(const JobOptions& options, const pipeline::ScanFeed& feed);
 

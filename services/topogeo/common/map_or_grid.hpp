@@ -1,4 +1,4 @@
-// Maps that commands make of grids, by simulated views.
+// Maps that commands make from grids, by simulated views.
 #pragma once
 
 #include <filesystem>
@@ -20,8 +20,9 @@ planning::OccupancyGrid read_grid(const std::filesystem::path& file);
 storage::MapDocument map_with_stops(planning::OccupancyGrid grid, const pipeline::Config& config,
                                     const std::string& robot_id);
 
-/// The map of a file or database to localize in. A grid (YAML of map_server), and a map that has
-/// nothing but one, gets stops, and stderr says so. Throws std::runtime_error naming the file.
+/// The map of a file or database to localize in. A grid (YAML of map_server), or a map that
+/// consists of a grid only, gets stops, which is reported on stderr. Throws std::runtime_error
+/// naming the file.
 std::shared_ptr<const localization::StoredMap> load_map_or_grid(const std::filesystem::path& file,
                                                                 const pipeline::Config& config);
 

@@ -14,12 +14,12 @@ namespace topogeo::cli {
 
 /// The outcome of the search at one port or host.
 struct SearchedPort {
-  std::string port;   ///< as searched
+  std::string port;   ///< name under which it was searched
   std::string name;   ///< lasting name for the devices file
-  std::string error;  ///< why it could not be searched; empty: it was
+  std::string error;  ///< reason why it could not be searched; empty if it was
   std::optional<devices::RecognizedDevice> device;
-  bool asked = false;    ///< the device answered a question; otherwise it was heard
-  std::string why_none;  ///< outcome without a device
+  bool asked = false;    ///< true: the device answered a request; false: it sends by itself
+  std::string why_none;  ///< reason why no device was found
 };
 
 /// A line for each port, with the lines of the devices file below those with a device.

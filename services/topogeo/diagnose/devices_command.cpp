@@ -1,4 +1,4 @@
-// topogeo devices: what is connected to the serial ports, and which settings fit.
+// topogeo devices: finds the devices on the serial ports and the settings that fit them.
 #include <chrono>
 #include <filesystem>
 #include <iostream>
@@ -36,7 +36,7 @@ struct DevicesOptions {
   bool force = false;
 };
 
-/// The search on one port; lives in the loop.
+/// The search on one port. Must be used in its loop only.
 class OpenPort {
  public:
   OpenPort(messaging::EventLoop& loop, std::string path, bool asks)
@@ -45,7 +45,7 @@ class OpenPort {
                                                          : devices::PortSearch::Link::kSerial),
         line_(loop, search_, sensor_gateway::PortOptions{path_}, {}) {}
 
-  /// A port that cannot be opened, or is unplugged, is not waited for.
+  /// The search does not wait for a port that cannot be opened or is unplugged.
   [[nodiscard]] bool over() const { return search_.done() || !line_.why_closed().empty(); }
 
   [[nodiscard]] SearchedPort result() const {
@@ -68,7 +68,7 @@ class OpenPort {
   sensor_gateway::SerialLine line_;
 };
 
-/// A host without a port has those of the lasers in the table.
+/// A host without a port is searched at the ports of the lasers in the table.
 std::vector<std::string> ports_of(const std::string& path) {
   try {
     if (devices::is_network_address(path) && devices::network_address(path).datagrams) {

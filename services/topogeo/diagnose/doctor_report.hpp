@@ -13,7 +13,7 @@ namespace topogeo::cli {
 
 enum class Severity : std::uint8_t {
   kGood,
-  kHint,    ///< works, but less well or not for long
+  kHint,    ///< the system works, but less well or not for long
   kProblem  ///< does not work, or loses data
 };
 
@@ -22,7 +22,7 @@ struct Finding {
   std::string check;  ///< short name of the check
   Severity severity = Severity::kGood;
   std::string what;
-  std::string why;     ///< why it matters; empty when all is well
+  std::string why;     ///< consequence of the finding; empty when all is well
   std::string remedy;  ///< what to do
 };
 

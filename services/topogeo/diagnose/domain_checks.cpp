@@ -20,12 +20,13 @@ namespace {
 using enum Severity;
 using Findings = std::vector<Finding>;
 
-/// Tables report a service as silent after 1.5 s, so clocks must agree better than people notice.
+/// Largest difference of clocks. Tables show a service as silent after 1.5 s, so the difference
+/// must be well below that.
 constexpr double kWrongClock_s = 0.5;
 constexpr double kPoorClock_s = 0.1;
 /// The first status of a service may be half a second old on arrival.
 constexpr std::size_t kLeastSamples = 2;
-/// Services that a robot has once.
+/// Services of which a robot has only one.
 constexpr auto kOnceForEachRobot = std::to_array<std::string_view>(
     {"sensor_gateway", "local_mapper", "localizer", "map_store", "planner", "navigator"});
 

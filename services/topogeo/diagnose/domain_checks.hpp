@@ -33,16 +33,16 @@ class ClockLag {
 };
 
 struct DomainFacts {
-  std::vector<msg::ServiceStatus> services;  ///< the newest of each
+  std::vector<msg::ServiceStatus> services;  ///< newest status of each service
   std::vector<messaging::RemoteEndpoint> endpoints;
-  std::map<std::string, std::string> partitions;  ///< by instance; runs have their own
+  std::map<std::string, std::string> partitions;  ///< by instance; each `topogeo run` has its own
   std::map<std::string, ClockLag> clocks;         ///< by host
   std::uint32_t domain = 0;
   std::string host;                ///< host of this program
   std::string unanswered_servers;  ///< see unanswered_servers()
   std::string elsewhere;           ///< see services_elsewhere()
-  std::size_t units = 0;           ///< its active units whose services join a domain
-  std::string version;             ///< of this program
+  std::size_t units = 0;  ///< number of active units of this host whose services join a domain
+  std::string version;    ///< of this program
   std::uint32_t wire_version = msg::kSchemaVersion;
 };
 

@@ -14,7 +14,7 @@ using Findings = std::vector<Finding>;
 
 constexpr std::uint64_t kMega = 1'000'000;
 
-// Two ports per program of a domain, and the library tries a hundred pairs.
+// A program of a domain needs two ports, and the library tries a hundred pairs.
 constexpr std::uint32_t kPortsOfPrograms = 200;
 // Linux's default for a UDP socket. With less, a second local map of 64 KB, which the kernel counts
 // twice, is lost.
@@ -35,7 +35,7 @@ constexpr double kMuchThrottled = 0.25;
 // A search for loops keeps every CPU busy for a while with one thread each. A thread that wakes
 // among three waits for two others.
 constexpr double kCrowded = 3.0;
-// A load is the mean of a minute and may be over: then hardly any thread waits now.
+// A load is the mean of a minute. If its cause has ended, hardly any thread waits now.
 constexpr double kMuchPressure = 0.5;
 // Sockets, segments and locks of a service with a pool of a hundred peers.
 constexpr std::uint64_t kLeastOpenFiles = 256;

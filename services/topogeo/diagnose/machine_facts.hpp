@@ -15,16 +15,16 @@ namespace topogeo::cli {
 /// if there is no other.
 struct MulticastProbe {
   std::string interface;
-  std::string error;  ///< why nothing came back; empty: the packet did
+  std::string error;  ///< reason why the packet did not come back; empty if it did
   bool loopback = false;
 };
 
 struct SerialPortFacts {
   std::string path;
   bool exists = false;
-  bool accessible = false;  ///< for `user`
+  bool accessible = false;  ///< whether `user` may open it
   std::string group;        ///< owner of the port
-  bool named = false;       ///< by the devices file; else it was found in /dev
+  bool named = false;       ///< true: the devices file names it; false: it was found in /dev
   std::string user{};       ///< who opens it: the user of the gateway's unit, else of this program
 };
 
@@ -45,7 +45,7 @@ struct MachineFacts {
   bool secured = false;  ///< with TOPOGEO_SECURITY, which discovery servers do not support
   std::vector<MulticastProbe> multicast;
   bool multicast_route = false;
-  std::uint64_t receive_buffer_bytes = 0;  ///< of a UDP socket, net.core.rmem_default
+  std::uint64_t receive_buffer_bytes = 0;  ///< default of a UDP socket, net.core.rmem_default
 
   // shared memory
   bool uses_shared_memory = false;
@@ -63,7 +63,7 @@ struct MachineFacts {
   // disk
   std::string map_folder;
   std::string map_folder_error;  ///< why it cannot be written; empty: it can
-  std::string closed_folder;     ///< above the map's, without access for `user`
+  std::string closed_folder;     ///< folder above the map folder that `user` cannot access
   std::uint64_t disk_free_bytes = 0;
 
   support::MachineCpu cpu;

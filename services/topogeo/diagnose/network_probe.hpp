@@ -14,14 +14,14 @@ namespace topogeo::cli {
 inline constexpr const char* kDiscoveryGroup = "239.255.0.1";
 
 struct UdpSocket {
-  std::uint32_t port = 0;  ///< of this machine
-  std::string inode;       ///< of the socket file; empty if the kernel hides it
+  std::uint32_t port = 0;  ///< port of this machine
+  std::string inode;       ///< inode of the socket; empty if the kernel hides it
 };
 
 /// All sockets in net/udp and net/udp6 of the kernel.
 std::vector<UdpSocket> udp_sockets(const std::filesystem::path& proc);
 
-/// Why a UDP port cannot be opened beside the programs that share it; empty: it can.
+/// The reason why a UDP port cannot be opened beside the programs that share it; empty if it can.
 std::string why_port_cannot_be_shared(std::uint32_t port);
 
 /// "name (process id)" of a program with a socket at the port; empty when it cannot be found, as

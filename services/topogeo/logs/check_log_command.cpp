@@ -18,8 +18,8 @@
 namespace topogeo::cli {
 namespace {
 
-// Exit codes of this command only, so that scripts can tell a faulty log from a file that is no
-// log.
+// Exit codes of this command only, so that scripts can distinguish a faulty log from a file that
+// is no log.
 constexpr int kClean = 0;
 constexpr int kFaulty = 1;
 constexpr int kUnreadable = 2;

@@ -16,7 +16,8 @@
 namespace topogeo::cli {
 namespace {
 
-/// A signal during the construction of the recorder ends it like a later one.
+/// Records until a signal. A signal during the construction of the recorder counts like a later
+/// one.
 void record(const RecordRequest& request) {
   std::optional<Recorder> recorder;
   std::atomic<Recorder*> made = nullptr;

@@ -34,7 +34,7 @@ struct RecordRequest {
 /// the graph and grid of the map store, as far as these services are there.
 class Recorder {
  public:
-  /// Throws service::UsageError and service::BadInputError for a faulty request.
+  /// Throws service::UsageError or service::BadInputError for a faulty request.
   explicit Recorder(const RecordRequest& request);
 
   /// Runs until the gateway's stream has ended and with it those of localizer and map store, or
@@ -53,13 +53,13 @@ class Recorder {
   void record_graph();
   /// Records the current grid unless it is the same as the last one.
   void take_grid();
-  /// Each connected stage has ended, and everything that it counts has arrived.
+  /// Whether each connected stage has ended and all messages that it counts have arrived.
   [[nodiscard]] bool is_complete();
-  /// The final graph or grid of the map store has arrived.
+  /// Whether the final graph or grid of the map store has arrived.
   [[nodiscard]] bool has_graph() const;
   [[nodiscard]] bool has_grid();
   void stop_at_end();
-  /// Once, when no gateway is found.
+  /// Reports once that no gateway is found.
   void say_elsewhere();
   void report();
 
@@ -78,7 +78,7 @@ class Recorder {
     bool has_pose = false;
   };
   std::map<std::uint64_t, RecentScan> recent_;  // by number
-  std::uint64_t odometry_epoch_ = 0;            // of the last scan
+  std::uint64_t odometry_epoch_ = 0;            // epoch of the last scan
   std::uint64_t first_ = 0;                     // number of the first scan recorded
   std::uint64_t next_ = 0;                      // number of the scan that is expected
   std::uint64_t next_pose_ = 0;                 // after the last scan with a pose

@@ -80,7 +80,7 @@ Figures figures_of(const CompareOptions& options) {
       relations = pipeline::relations_error(estimate, given);
     }
     return {pipeline::trajectory_error(estimate, reference, options.max_apart_ns()), relations};
-  } catch (const std::invalid_argument& error) {  // by trajectory_error: no file names
+  } catch (const std::invalid_argument& error) {  // thrown without file names
     throw service::BadInputError(options.estimate.string() + " and " + options.reference.string() +
                                  ": " + error.what());
   } catch (const std::exception& error) {

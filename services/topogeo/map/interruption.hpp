@@ -14,8 +14,8 @@
 
 namespace topogeo::cli {
 
-/// Ctrl-C asks the work to end after the current scan. Work that cannot be asked is ended at once,
-/// which loses nothing because nothing has been written.
+/// Ctrl-C requests that the work end after the current scan. Work that does not check for this ends
+/// at once, which loses nothing because nothing has been written.
 class Interruption {
  public:
   Interruption() : signals_([this](int number) { on_signal(number); }) {}

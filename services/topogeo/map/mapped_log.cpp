@@ -86,7 +86,7 @@ std::unique_ptr<pipeline::MappingRun> make_run(const Job& job) {
                                                 job.inputs.map, initial_pose);
 }
 
-/// Ends the drive in the map, once all scans are in.
+/// Ends the drive in the map, after its last scan.
 void finish(MappedLog& mapped, Interruption& interruption) {
   if (!mapped.job->inputs.map) std::cerr << "matching revisited places\n";
   const Interruption::Immediate immediate(interruption);
@@ -94,8 +94,8 @@ void finish(MappedLog& mapped, Interruption& interruption) {
   mapped.report = make_report(mapped);
 }
 
-/// The same log from its beginning, for a configuration. Scans without odometry at their time count
-/// if odometry comes from the scans.
+/// The same log from its beginning, read for a configuration. If odometry comes from the scans,
+/// scans without odometry at their time are used, too.
 recording::LogReader read_again(const Job& job, const pipeline::Config& config) {
   if (config.odometry_source != pipeline::OdometrySource::kLaser) return job.reader.from_start();
   recording::TopicChoice topics = job.options.topics;
@@ -144,7 +144,8 @@ std::optional<localization::OdometryNoise> measured_noise(const Job& job) {
   }
 }
 
-/// Whether the user leaves the settings of a remedy to this program, and it measures odometry.
+/// Whether a remedy may be tried: the configuration file leaves its settings open, and a remedy of
+/// the odometry does not meet odometry that already comes from the scans.
 bool may_change(Remedy remedy, const MappedLog& mapped) {
   const pipeline::LoadedConfig& config = mapped.job->inputs.config;
   if (remedy == Remedy::kMoreStops) return !config.stop_distance_set;
@@ -153,7 +154,8 @@ bool may_change(Remedy remedy, const MappedLog& mapped) {
   return config.config.odometry_source == pipeline::OdometrySource::kAuto;
 }
 
-/// The configuration with a remedy, after a line on stderr; empty if the log does not show it.
+/// The configuration with a remedy, which is reported on stderr; empty if the log does not show the
+/// values.
 std::optional<pipeline::LoadedConfig> with_remedy(Remedy remedy, const Job& job,
                                                   const std::string& reason) {
   pipeline::LoadedConfig config = job.inputs.config;
@@ -212,7 +214,7 @@ std::optional<MappedLog> improved(MappedLog mapped, Interruption& interruption) 
         std::cerr << "topogeo: the map is no better: the one before stays\n";
       }
     }
-    // No advice names a remedy that was tried.
+    // The advice must not name a remedy that was tried.
     judge(mapped.report, mapped, tried);
   }
 }

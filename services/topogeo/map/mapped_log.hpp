@@ -15,7 +15,7 @@
 
 namespace topogeo::cli {
 
-/// A map of a log, and what it was made with.
+/// A map of a log, and the settings that made it.
 struct MappedLog {
   std::unique_ptr<Job> job;
   std::unique_ptr<pipeline::ScanFeed> feed;

@@ -51,7 +51,7 @@ struct MatchOptions {
   std::uint32_t width_px = 1600;
 };
 
-/// Numbers of the reference and the query.
+/// Numbers of the reference stop and the query stop.
 struct Pair {
   std::size_t reference = 0;
   std::size_t query = 0;
@@ -74,7 +74,7 @@ struct Stops {
   std::vector<topomap::StopPose> poses;
 };
 
-/// Decided by the file name's extension; everything else is read as a log.
+/// Whether the file is a map, by the extension of its name; other files are read as logs.
 bool is_map(const std::filesystem::path& file) {
   const std::string ending = file.extension().string();
   return ending == ".pb" || ending == ".sqlite";

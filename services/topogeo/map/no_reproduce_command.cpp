@@ -1,4 +1,4 @@
-// In place of `topogeo reproduce` (research/reproduce) where TOPOGEO_RESEARCH is off.
+// Replaces `topogeo reproduce` (research/reproduce) if TOPOGEO_RESEARCH is off.
 #include <memory>
 #include <string>
 #include <vector>

@@ -15,7 +15,7 @@
 namespace topogeo::cli {
 namespace {
 
-/// Step of the driven path in the picture: less is not visible.
+/// Step of the driven path in the picture; smaller steps are not visible.
 constexpr double kPathStep_m = 0.1;
 
 std::int64_t monotonic_ns() {
@@ -69,7 +69,7 @@ void ExploreSession::take_map() {
   if (std::exchange(graph_changed_, false)) {
     try {
       graph_ = std::make_shared<const topomap::GlobalMap>(service::from_elements(*follower_.map()));
-    } catch (const std::invalid_argument&) {  // the previous map stays
+    } catch (const std::invalid_argument&) {  // keep the previous map
     }
   }
   tour_.follow(graph_, map_, [this] {

@@ -28,7 +28,7 @@ namespace topogeo::cli {
 
 class ExploreSession {
  public:
-  /// Lives in the loop. Throws like GoalClient.
+  /// Must be used in the loop only. Throws like GoalClient.
   ExploreSession(const messaging::Participant& participant, messaging::EventLoop& loop,
                  const std::string& robot_id, const navigation::TourConfig& config);
 
@@ -39,7 +39,7 @@ class ExploreSession {
   void tick();
 
   [[nodiscard]] bool done() const { return tour_.done(); }
-  /// Why it cannot explore, if that will not change by itself; empty: it can.
+  /// The lasting reason why the robot cannot explore; empty if it can.
   [[nodiscard]] std::string trouble() const;
   /// A final line: targets, metres, abandoned targets.
   [[nodiscard]] std::string summary() const;
@@ -52,7 +52,7 @@ class ExploreSession {
   void take_map();
   void record_path();
   [[nodiscard]] navigation::NavigatorStatus navigator() const;
-  /// Whether somebody has paused the goal: the next one would drive on.
+  /// Whether an operator has paused the goal, because another goal would end the pause.
   [[nodiscard]] bool paused() const {
     return client_.taken() && client_.status()->reason == navigation::HaltReason::kPaused;
   }
@@ -71,7 +71,7 @@ class ExploreSession {
   std::shared_ptr<const planning::HybridMap> map_;
   std::uint64_t goal_id_ = 0;  // number given by the tour
   std::int64_t ticked_ns_ = 0;
-  std::int64_t paused_ns_ = 0;  // time that does not count
+  std::int64_t paused_ns_ = 0;  // time of the pause, which does not count
   std::optional<msg::LivePose> pose_;
   std::vector<Eigen::Vector2d> path_m_;  // map frame
   double driven_m_ = 0.0;

@@ -16,7 +16,7 @@
 namespace topogeo::cli {
 namespace {
 
-/// Unique among all clients, and never 0.
+/// A number that is unique among all clients and never 0.
 std::uint64_t new_goal_id() {
   std::random_device random;
   return (static_cast<std::uint64_t>(random()) << 16U) + (random() & 0xFFFFU) + 1;

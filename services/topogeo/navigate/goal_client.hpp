@@ -24,14 +24,14 @@ namespace topogeo::cli {
 
 class GoalClient {
  public:
-  /// Lives in the loop. Throws like Reader and Writer.
+  /// Must be used in the loop only. Throws like Reader and Writer.
   GoalClient(const messaging::Participant& participant, messaging::EventLoop& loop,
              std::string robot_id);
   GoalClient(const GoalClient&) = delete;
   GoalClient& operator=(const GoalClient&) = delete;
 
-  /// The missing ones of the robot's planner and navigator; empty: both are there and get what is
-  /// sent. A navigator takes no order from before it was connected.
+  /// Names of the missing services among the robot's planner and navigator; empty if both are
+  /// connected. A navigator takes no order from before it was connected.
   [[nodiscard]] std::string missing() const;
 
   /// "the robot's machine is too busy: the CPU is short for navigator" during that; else empty.
@@ -46,7 +46,7 @@ class GoalClient {
   /// Waits until the readers have received everything; false when the patience ends first.
   bool delivered(support::Patience& patience);
 
-  /// End of the goal sent; nothing while it may still be reached.
+  /// End of the goal sent; empty while it may still be reached.
   [[nodiscard]] std::optional<supervision::GoalEnd> end();
   /// Whether the navigator has the goal sent and has not ended it, by its newest status.
   [[nodiscard]] bool in_hand() const { return watch_ && watch_->in_hand(); }
@@ -76,7 +76,7 @@ class GoalClient {
 
   std::string robot_id_;
   std::string client_id_;
-  std::uint64_t goal_id_ = 0;  // 0: none sent
+  std::uint64_t goal_id_ = 0;  // 0: no goal was sent
   std::uint64_t sent_ = 0;
   std::uint64_t statuses_received_ = 0;
   std::optional<supervision::GoalWatch> watch_;

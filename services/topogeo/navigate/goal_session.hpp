@@ -1,5 +1,5 @@
-// A goal from the command line: waits for the services, sends it, shows the robot's progress, draws
-// the route.
+// A goal from the command line: waits for the services, sends the goal, shows the robot's progress
+// and draws the route.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +18,7 @@ struct GoalOptions {
   std::string target;                            ///< X,Y, #NODE or the name of a place
   std::optional<double> heading_deg;             ///< map frame
   bool look_around = false;                      ///< see msg::Goal
-  std::optional<std::filesystem::path> picture;  ///< of the route
+  std::optional<std::filesystem::path> picture;  ///< file for the picture of the route
   double patience_s = 60.0;                      ///< see supervision::GoalWatch
 };
 

@@ -97,7 +97,7 @@ int go_there(const GotoOptions& options) {
   }
   const supervision::GoalEnd end = *session.end();
   if (end.arrived) return service::kOk;
-  // It must not set out when nobody waits for it any more.
+  // The robot must not set out when no program waits for it any more.
   const bool called_off = call_off(loop, session.client());
   throw std::runtime_error(called_off ? end.reason : end.reason + "; " + kNotCalledOff);
 }

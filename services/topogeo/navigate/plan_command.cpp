@@ -139,7 +139,7 @@ int plan_route(const PlanOptions& options) {
   scene.zones = document.drawing.zones;
   scene.lines = document.drawing.lines;
   scene.filled_m = blocked_m;
-  scene.prove_goal = true;  // as the planner of the robot
+  scene.prove_goal = true;  // as the planner of the robot does
   BranchRoute route;
   route.along = planning::plan(document.global_map, from_m, to_m, config.planning, scene);
   route.whole = planning::along_branches(route.along, from_m, to_m);

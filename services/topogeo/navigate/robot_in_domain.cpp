@@ -34,7 +34,7 @@ void wait_for_services(messaging::EventLoop& loop, const RobotInDomain& robot,
 
 bool call_off(messaging::EventLoop& loop, GoalClient& client) {
   constexpr double kLastWord_s = 5.0;     // time for the robot to get the order and to stop
-  constexpr std::uint64_t kStatuses = 3;  // between repeats: some may be older than the order
+  constexpr std::uint64_t kStatuses = 3;  // between repeats, as some may be older than the order
   if (!client.has_sent()) return true;
   client.cancel();
   support::Patience patience(kLastWord_s, support::monotonic_s());

@@ -58,7 +58,7 @@ struct Blocks {
   std::vector<planning::Cell> cells;
 };
 
-/// Throws service::UsageError for a point off the map.
+/// Checks that a point is on the map. Throws service::UsageError if it is not.
 Blocks blocks_of(const std::vector<std::string>& texts, const planning::GridFrame& frame) {
   Blocks blocks;
   for (const std::string& text : texts) {
@@ -108,8 +108,8 @@ void print_steps(const planning::HybridRoute& route, double heading_rad) {
   }
 }
 
-/// The path of a robot that is not round or cannot turn on the spot, which a route for its largest
-/// disc may not have. Prints its length, or why there is none.
+/// Searches the path of a robot that is not round or cannot turn on the spot, because a route for
+/// its largest disc may have none. Prints the length of the path, or the reason why there is none.
 bool print_path_of_outline(const SimulateRouteOptions& options, const planning::HybridMap& map,
                            const planning::HybridRoute& route, const Blocks& blocks,
                            const navigation::GuardConfig& guard) {

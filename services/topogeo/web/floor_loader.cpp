@@ -49,7 +49,7 @@ RunOptions with_floor(RunOptions options, const msg::FloorOrder& order, const st
   floor.pose = fmt::format("{},{},{}", T_start_floor.x_m, T_start_floor.y_m,
                            T_start_floor.theta_rad * 180.0 / std::numbers::pi);
   options.floor = std::move(floor);
-  // A new map: nothing of the previous one applies.
+  // The map is new, so nothing of the previous map applies.
   options.job.map.reset();
   options.job.continued.reset();
   options.job.initial_pose.reset();

@@ -15,15 +15,15 @@
 
 namespace topogeo::cli {
 
-/// The same run with the simulated robot in a drawn floor and a new map that has the floor as its
-/// drawing. Writes NAME.world.yaml and NAME.zones.yaml into the folder of the run. Throws
-/// std::invalid_argument naming the fault of the floor.
+/// Options of the same run with the simulated robot in a drawn floor and with a new map that has
+/// the floor as its drawing. Writes NAME.world.yaml and NAME.zones.yaml into the folder of the run.
+/// Throws std::invalid_argument naming the fault of the floor.
 RunOptions with_floor(RunOptions options, const msg::FloorOrder& order, const std::string& name);
 
-/// Takes and answers orders to simulate a drawn floor. Lives in the loop of its run.
+/// Takes and answers orders to simulate a drawn floor. Must be used in the loop of its run only.
 class FloorLoader {
  public:
-  /// Called after the answer with the run to continue with.
+  /// Called after the answer, with the options of the run that continues.
   using Load = std::function<void(const RunOptions&)>;
 
   FloorLoader(const messaging::Participant& participant, messaging::EventLoop& loop,
@@ -38,7 +38,7 @@ class FloorLoader {
   Load load_;
   std::uint32_t floors_ = 0;
   std::uint64_t answers_sent_ = 0;
-  msg::DrawingAnswer last_;  // for a repeated order
+  msg::DrawingAnswer last_;  // sent again for a repeated order
   messaging::Reader<msg::FloorOrder> orders_;
   messaging::Writer<msg::DrawingAnswer> answers_;
 };

@@ -13,7 +13,7 @@ namespace {
 
 constexpr const char* kTokenVariable = "TOPOGEO_WEB_TOKEN";
 
-/// Empty: none.
+/// The value of the environment variable; empty if it is not set.
 std::string token_of_environment() {
   // NOLINTNEXTLINE(concurrency-mt-unsafe): no other thread uses the environment yet
   const char* const given = std::getenv(kTokenVariable);
