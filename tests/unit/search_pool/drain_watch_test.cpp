@@ -6,7 +6,8 @@
 namespace topogeo::search_pool {
 namespace {
 
-/// Polls 128 times a second; returns how long the worker stays with `open` tasks at each time.
+/// Polls 128 times a second. Returns the time in seconds that the worker stays if `open` gives the
+/// number of its tasks at each time.
 template <class Open>
 double stay_s(const Open& open, bool busy = false) {
   constexpr double kStep_s = 1.0 / 128.0;

@@ -47,7 +47,7 @@ class TaskRunnerTest : public ::testing::Test {
       return came_.wait_for(lock, at_most, [&] { return outcomes_.size() >= count; });
     });
   }
-  /// Slots that have solved a task pause until release().
+  /// Pauses each slot that has solved a task until release().
   void hold() {
     release_ = {};
     hold_ = release_.get_future().share();
@@ -64,9 +64,9 @@ class TaskRunnerTest : public ::testing::Test {
   std::condition_variable came_;
   std::map<std::uint64_t, TaskRunner::Outcome> outcomes_;
   std::vector<std::uint64_t> order_;
-  std::set<int> policies_;  // of the searching threads
+  std::set<int> policies_;  // scheduling policies of the searching threads
   std::vector<MapPointer> maps_{room(0, 0.0), room(1, 0.2), room(2, 0.4)};
-  std::unique_ptr<TaskRunner> runner_;  // last: its threads use the members before
+  std::unique_ptr<TaskRunner> runner_;  // declared last, because its threads use the other members
 };
 
 TEST_F(TaskRunnerTest, SeveralSlotsGiveWhatOneMatcherGives) {
@@ -114,7 +114,7 @@ TEST_F(TaskRunnerTest, TheTasksOfAClientThatIsGoneAreNotWorkedOn) {
   for (std::uint64_t i = 1; i < 4; ++i) runner_->add(ready_job(maps_[0], maps_[1], i, "goes"));
   runner_->add(ready_job(maps_[0], maps_[1], 4, "stays"));
   runner_->remove("goes");
-  runner_->remove("goes");  // nothing is left of it
+  runner_->remove("goes");  // a second removal does nothing
   release();
   ASSERT_TRUE(wait_for(2));
   EXPECT_THAT(order_, ElementsAre(0, 4));

@@ -41,7 +41,7 @@ ServerConfig stop_config() {
   return config;
 }
 
-/// The service beside a base; its loop runs only when a test lets it.
+/// The service with a base as its peer. Its loop runs only when a test lets it.
 class WebStop : public testing::Test {
  protected:
   WebStop() {
@@ -101,7 +101,7 @@ class WebStopDuringOrder : public WebStop, public testing::WithParamInterface<co
     }));
     return result.get();
   }
-  /// The answer to an order of now.
+  /// The answer to an order that is sent now.
   std::string answer_now() {
     return in_loop([this] { return http_post(web_.port(), GetParam(), kStopToken, body_).body; });
   }
@@ -132,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(Orders, WebStopDuringOrder,
                          testing::Values("/api/goal", "/api/explore", "/api/resume",
                                          "/api/return"));
 
-/// A body with many keys.
+/// A request body with many keys.
 std::string many_keys(int keys) {
   std::string body = R"({"zones":[0])";
   for (int i = 1; i < keys; ++i) body += ",\"k" + std::to_string(i) + "\":0";
@@ -160,7 +160,7 @@ TEST_F(WebStop, IsTakenAmongHostileConnections) {
   std::vector<std::unique_ptr<test::RawConnection>> idle;
   for (int i = 0; i < kIdle; ++i) {
     idle.push_back(std::make_unique<test::RawConnection>(web_.port()));
-    idle.back()->send("GET / HTTP/1.1\r\nHost");  // and no more
+    idle.back()->send("GET / HTTP/1.1\r\nHost");  // the rest of the request never comes
   }
   std::vector<std::unique_ptr<WebSocketClient>> spectators;
   spectators.reserve(kSpectators);

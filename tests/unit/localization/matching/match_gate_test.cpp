@@ -91,7 +91,7 @@ TEST_F(MatchGateTest, AllowsLessDoubtForAWiderSearch) {
 TEST_F(MatchGateTest, RejectsWhatThePredictionRulesOut) {
   result_.T_reference_query = {1.49, 0.0, 0.1};  // 4.9 deviations
   EXPECT_EQ(reason(), Reason::kNone);
-  result_.T_reference_query = {1.51, 0.0, 0.1};  // 5.1 deviations; 25 is the limit of the square
+  result_.T_reference_query = {1.51, 0.0, 0.1};  // 5.1 deviations; the limit is 25, squared
   EXPECT_EQ(reason(), Reason::kImplausible);
   result_.T_reference_query = {1.0, 0.0, 0.1 + 0.26};
   EXPECT_EQ(reason(), Reason::kImplausible);
@@ -113,7 +113,7 @@ TEST_F(MatchGateTest, RejectsAMatchThatHasARival) {
 
 TEST_F(MatchGateTest, ViolationsAndARivalAddUp) {
   result_.second = {result_.T_reference_query, 0.5 * 0.8};
-  result_.violations = 0.059;  // half of 0.12, less a little
+  result_.violations = 0.059;  // a little less than half of 0.12
   EXPECT_EQ(reason(), Reason::kNone);
   result_.violations = 0.061;
   EXPECT_EQ(reason(), Reason::kDoubtful);
@@ -122,7 +122,7 @@ TEST_F(MatchGateTest, ViolationsAndARivalAddUp) {
 }
 
 TEST_F(MatchGateTest, OdometryDoesNotSpeakAgainstARival) {
-  // 3.46 deviations from the prediction, where the prior of the combined form is a half.
+  // At 3.46 deviations from the prediction, the prior of the combined form is a half.
   const Pose2 far{1.0 + 0.1 * std::sqrt(12.0), 0.0, 0.1};
   result_.T_reference_query = task_.T_reference_query;
   result_.second = {far, 0.5 * 0.8};
@@ -130,7 +130,7 @@ TEST_F(MatchGateTest, OdometryDoesNotSpeakAgainstARival) {
   EXPECT_EQ(reason(), Reason::kSecondSolution);
   std::swap(result_.T_reference_query, result_.second.T_reference_query);
   EXPECT_NEAR(rivalry(task_, result_), 0.25, 1e-12);
-  task_.fitness_form = FitnessForm::kTopological;  // has no odometry in it
+  task_.fitness_form = FitnessForm::kTopological;  // a form without odometry
   EXPECT_NEAR(rivalry(task_, result_), 0.5, 1e-12);
   result_.second.fitness = 0.0;
   EXPECT_EQ(rivalry(task_, result_), 0.0);
@@ -155,12 +155,12 @@ TEST_F(MatchGateTest, CovarianceByHand) {
   information.diagonal() << 99.75, 0.0, 399.75;
   const Eigen::Matrix3d covariance = match_covariance(information, 0.5);  // unscaled deviation
   EXPECT_NEAR(covariance(0, 0), 0.01 + 0.0004, 1e-9);
-  EXPECT_NEAR(covariance(1, 1), 4.0 + 0.0004, 1e-9);  // unknown along it: 2 m, not infinite
+  EXPECT_NEAR(covariance(1, 1), 4.0 + 0.0004, 1e-9);  // unknown along y: 2 m, not infinite
   EXPECT_NEAR(covariance(2, 2), 0.0025 + 0.0052 * 0.0052, 1e-9);
   EXPECT_NEAR(match_covariance(information, 1.5)(0, 0), 0.04 + 0.0004, 1e-9);  // twice as wide
 }
 
-// Points of two walls along x whose normals are off by 3 degrees seem to know x.
+// Points of two walls along x seem to determine x if their normals are off by 3 degrees.
 TEST_F(MatchGateTest, MatchesAlongABareCorridorDoNotAddUpToAPosition) {
   const double off_rad = 0.05;
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();

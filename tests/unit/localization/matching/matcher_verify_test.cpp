@@ -30,7 +30,7 @@ double next(double value) {
   return std::nextafter(value, kInfinite);
 }
 
-// A corridor with equal pillars, so that a second place always fits.
+// A corridor with equal pillars: each match also fits at a second place.
 world::World two_colonnades() {
   world::World world = test::endless_corridor();
   for (int i = -12; i <= 12; ++i) {
@@ -133,7 +133,7 @@ TEST_F(MatcherVerifyTest, FindsNothingWrongWithNothingInCommon) {
   EXPECT_NE(client_.verify(task_, wrong), "");
 }
 
-// Every number by the smallest possible step, up and in sign, and every other field.
+// Changes every number by the smallest possible step and in its sign, and every other field.
 TEST_F(MatcherVerifyTest, FindsEverySingleFieldThatIsChanged) {
   task_.seed = 0;
   while (worker_.solve(task_).second.fitness <= 0.0) ASSERT_LT(++task_.seed, 50U);
@@ -181,7 +181,7 @@ TEST_F(MatcherVerifyTest, FindsEverySingleFieldThatIsChanged) {
   expect_found(faults);
 }
 
-// The rest follows from the poses: any other pose, however near, has other evidence.
+// The evidence follows from the poses: any other pose, however near, has other evidence.
 TEST_F(MatcherVerifyTest, FindsPosesThatAreNotThoseOfTheEvidence) {
   task_.seed = 0;
   while (worker_.solve(task_).second.fitness <= 0.0) ASSERT_LT(++task_.seed, 50U);
@@ -222,7 +222,7 @@ TEST_F(MatcherVerifyTest, FindsSolutionsThatSolveWouldNotChoose) {
   expect_found(faults);
 }
 
-// Right numbers for a place out of reach: only the search space reveals it.
+// The numbers are right for a place out of reach; only the search space reveals it.
 TEST_F(MatcherVerifyTest, FindsSolutionsOutsideOfTheSearchSpace) {
   MatchTask wider = task_;
   wider.half_width *= 1.5;
@@ -232,7 +232,7 @@ TEST_F(MatcherVerifyTest, FindsSolutionsOutsideOfTheSearchSpace) {
   EXPECT_NE(client_.verify(task_, outside).find("search space"), std::string::npos);
 }
 
-// A result of another task, of other maps, of another form: valid there, and wrong here.
+// Results of another task, of other maps and of another form are valid there, and wrong here.
 TEST_F(MatcherVerifyTest, FindsTheResultOfAnotherTask) {
   const MatchResult result = worker_.solve(task_);
   const std::vector<std::pair<std::string, std::function<void(MatchTask&)>>> changes{

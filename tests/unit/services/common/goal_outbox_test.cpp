@@ -1,4 +1,4 @@
-// Orders on their way to a navigator that is heard before it is connected, and to its next life.
+// Orders to a navigator that is discovered before it is connected, and to one that restarts.
 #include "topogeo/service/goal_outbox.hpp"
 
 #include <optional>
@@ -24,7 +24,7 @@ msg::Goal order(std::uint64_t id) {
   return message;
 }
 
-/// A navigator takes orders as the real one does: none from before it was connected.
+/// A navigator that, like the real one, takes no orders from before it was connected.
 struct StandInNavigator {
   explicit StandInNavigator(const std::string& partition)
       : participant(messaging::options_in(partition)), statuses(participant) {}
@@ -56,7 +56,7 @@ class GoalOutboxTest : public testing::Test {
   bool run_until(const std::string& what, const std::function<bool()>& condition) {
     return test::wait_in_loop(service_.loop(), what, condition);
   }
-  /// Waits until the outbox hears another navigator than before.
+  /// Waits until the outbox hears a navigator other than the last one.
   void hear(StandInNavigator& navigator) {
     const auto before = heard_;
     ASSERT_TRUE(run_until("a status", [&] {
@@ -104,7 +104,7 @@ TEST_F(GoalOutboxTest, TheNextNavigatorGetsNoOrderOfBefore) {
   EXPECT_EQ(next.taken, std::vector<std::uint64_t>{2});
 }
 
-// A planner that starts again meanwhile needs the goal, for the way after the pause.
+// A planner that restarts meanwhile needs the goal for the route after the pause.
 TEST_F(GoalOutboxTest, AGoalStaysStoredBehindAnOrderToPause) {
   StandInNavigator navigator(partition_);
   navigator.listen();

@@ -1,4 +1,4 @@
-// When a deaf service listens, reports and ends. The tests advance the time.
+// The times at which a deaf service listens, reports and ends. The tests advance the time.
 #include "topogeo/service/rejoin_schedule.hpp"
 
 #include <vector>
@@ -43,7 +43,7 @@ TEST_F(RejoinScheduleTest, AsksOthersWhenTheInputIsSilentForFiveSeconds) {
   }
 }
 
-// The silence of a service that begins to work counts from its start.
+// The silence of a service that has just started counts from its start.
 TEST_F(RejoinScheduleTest, ListensBeforeItProbes) {
   input_ = {.silence_s = 10.0, .ever_came = true, .hears_sender = false, .deaf = false};
   const double heard_s = 10.0 + RejoinSchedule::kListen_s / 2;

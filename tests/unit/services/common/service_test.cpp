@@ -1,4 +1,4 @@
-// Messages that a service accepts: those of its robot that its handlers can use.
+// A service accepts the messages of its robot that its handlers can use.
 #include "topogeo/service/service.hpp"
 
 #include <vector>
@@ -167,7 +167,7 @@ TEST_F(ServiceTest, AdvertisedWriterReachesAPeerAndItsEventsAreWatched) {
   EXPECT_TRUE(service_.send(writer, message_of<msg::Route>("robot"), "route"));
 
   const messaging::Writer<msg::Goal> odd = service_.advertise<msg::Goal>("command");
-  const messaging::Reader<msg::Goal> strict(peer_);  // requests more than role command offers
+  const messaging::Reader<msg::Goal> strict(peer_);  // stricter than the role command
   EXPECT_TRUE(
       run_until("incompatible settings to be a fault", [&] { return status_.fault_count() > 0; }));
   EXPECT_EQ(status_.faults()[0].reason().to_string(), "incompatible_qos");

@@ -47,7 +47,7 @@ TEST(StampClock, SaysOnceThatTheStampsHaveGoneBack) {
   StampClock clock(0);
   clock.observe(70 * kSecond_ns, 0);
   EXPECT_EQ(clock.now_ns(0), 70 * kSecond_ns);
-  // A restarted gateway with a corrected clock: an hour less.
+  // A gateway restarts with a clock that was set back by an hour.
   for (std::int64_t second = 1; second <= 11; ++second) {
     clock.observe(-3530 * kSecond_ns + second * kSecond_ns, second * kSecond_ns);
     clock.now_ns(second * kSecond_ns);
@@ -61,7 +61,7 @@ TEST(StampClock, NeverGoesBackALittle) {
   StampClock clock(0);
   clock.observe(70 * kSecond_ns, 0);
   std::int64_t last_ns = clock.now_ns(0);
-  for (std::int64_t second = 1; second <= 20; ++second) {  // half a second less from here on
+  for (std::int64_t second = 1; second <= 20; ++second) {  // from here on half a second less
     clock.observe(70 * kSecond_ns + second * kSecond_ns - kSecond_ns / 2, second * kSecond_ns);
     const std::int64_t now_ns = clock.now_ns(second * kSecond_ns);
     EXPECT_GE(now_ns, last_ns);

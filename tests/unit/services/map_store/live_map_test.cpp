@@ -84,7 +84,7 @@ TEST_F(Live, SmallCorrectionsStayLargerOnesStartAnew) {
   stops_[2].T_map_robot.y_m += 0.04;
   work(live_);
   EXPECT_EQ(live_.rebuilds(), 0U);
-  stops_[2].T_map_robot.y_m += 0.02;  // 6 cm in all
+  stops_[2].T_map_robot.y_m += 0.02;  // 6 cm in total
   work(live_);
   EXPECT_EQ(live_.rebuilds(), 1U);
   EXPECT_TRUE(live_.snapshot(1) == fused());

@@ -97,7 +97,7 @@ TEST_F(Files, ResultsAreWholeAndNothingElseStays) {
   document.trajectory.stops = {{0, 0, {}, Eigen::Matrix3d::Zero()}};
   fs::create_directories(directory_ / ".unfinished" / "left over");
   write_results(directory_, document, "title");
-  write_results(directory_, document, "title");  // over the first ones
+  write_results(directory_, document, "title");  // replaces the first files
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(directory_)) {
     names.push_back(entry.path().filename());
