@@ -28,4 +28,10 @@ BaseLimits within(const BaseLimits& limits, const BaseLimits& most) {
           limited("angular_radps2", limits.angular_radps2, most.angular_radps2)};
 }
 
+BaseVelocity within(const BaseVelocity& velocity, const BaseLimits& limits) {
+  const double excess = std::max({1.0, std::abs(velocity.linear_mps) / limits.linear_mps,
+                                  std::abs(velocity.angular_radps) / limits.angular_radps});
+  return {velocity.linear_mps / excess, velocity.angular_radps / excess};
+}
+
 }  // namespace topogeo::devices

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "topogeo/devices/base_limits.hpp"
+
 namespace topogeo::devices {
 namespace {
 
@@ -89,9 +91,7 @@ void BaseMotion::set_limits(const BaseLimits& limits) {
 }
 
 void BaseMotion::want_velocity(const BaseVelocity& velocity) {
-  const double excess = std::max({1.0, std::abs(velocity.linear_mps) / limits_.linear_mps,
-                                  std::abs(velocity.angular_radps) / limits_.angular_radps});
-  aim_ = {velocity.linear_mps / excess, velocity.angular_radps / excess};
+  aim_ = within(velocity, limits_);
   translation_.want_speed(units_.counts(aim_.linear_mps));
   rotation_.want_speed(units_.rotation_counts(aim_.angular_radps));
 }

@@ -134,10 +134,8 @@ void TwoWheelDriver::stand(std::int64_t now_ns) {
 void TwoWheelDriver::send_speeds(std::int64_t now_ns) {
   const double passed_s = 1e-9 * static_cast<double>(now_ns - sent_ns_);
   sent_ns_ = now_ns;
-  BaseVelocity allowed = guard_ && term_.velocity_holds() ? guard_(wanted_, now_ns) : wanted_;
-  allowed.linear_mps = std::clamp(allowed.linear_mps, -limits_.linear_mps, limits_.linear_mps);
-  allowed.angular_radps =
-      std::clamp(allowed.angular_radps, -limits_.angular_radps, limits_.angular_radps);
+  const BaseVelocity allowed =
+      within(guard_ && term_.velocity_holds() ? guard_(wanted_, now_ns) : wanted_, limits_);
   const double most_s = std::min(passed_s, settings_.watchdog_s);
   sent_.linear_mps = approached(sent_.linear_mps, allowed.linear_mps, most_s * limits_.linear_mps2);
   sent_.angular_radps =

@@ -167,6 +167,11 @@ TEST(CreateDriver, ARobotOnItsDockWaitsWithoutAnEmergencyStop) {
   EXPECT_TRUE(base.wait_for_commands());
 }
 
+TEST(CreateDriver, AFastCommandIsSlowerOnTheSameArc) {
+  CreateOnLine base;
+  keep_the_arc_of_fast_commands(base);
+}
+
 TEST(CreateDriver, ABumperStopsTheBaseAndLetsItBackOff) {
   CreateOnLine base;
   back_off_from_a_bump(base, 3U);  // right and left

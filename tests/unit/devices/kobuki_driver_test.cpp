@@ -100,6 +100,11 @@ TEST(KobukiDriver, ARobotOnTheCableOfItsChargerWaits) {
   EXPECT_TRUE(base.wait_for_commands());
 }
 
+TEST(KobukiDriver, AFastCommandIsSlowerOnTheSameArc) {
+  KobukiOnLine base;
+  keep_the_arc_of_fast_commands(base);
+}
+
 TEST(KobukiDriver, ABumperStopsTheBaseAndLetsItBackOff) {
   KobukiOnLine base;
   back_off_from_a_bump(base, 2U);  // the central one

@@ -73,6 +73,11 @@ TEST(TextBaseDriver, AnEmergencyStopHoldsUntilAReset) {
   expect_reset_before_motion(base);
 }
 
+TEST(TextBaseDriver, AFastCommandIsSlowerOnTheSameArc) {
+  TextBaseOnLine base;
+  keep_the_arc_of_fast_commands(base);
+}
+
 TEST(TextBaseDriver, ABumperStopsTheBaseAndLetsItBackOff) {
   TextBaseOnLine base;
   back_off_from_a_bump(base, 1U);

@@ -103,6 +103,20 @@ void drive_a_square(OnLine& base, double battery_v) {
   for (const std::uint64_t drops : base.driver.status().drops) EXPECT_EQ(drops, 0U);
 }
 
+/// The guard of a gateway judges the arc that is commanded: the base gets no other one.
+template <typename OnLine>
+void keep_the_arc_of_fast_commands(OnLine& base) {
+  ASSERT_TRUE(base.start());
+  const BaseLimits& most = base.driver.limits();
+  const geometry::Velocity arc{most.linear_mps, 10.0 * most.angular_radps};
+  base.drive(arc.linear_m_per_s, arc.angular_rad_per_s, 3 * kWheelsSecond_ns);
+  EXPECT_NEAR(base.emulator.commanded_velocity().linear_m_per_s, 0.1 * most.linear_mps, 0.005);
+  EXPECT_NEAR(base.emulator.commanded_velocity().angular_rad_per_s, most.angular_radps, 0.02);
+  base.drive(1e300, 1e-300, 3 * kWheelsSecond_ns);
+  EXPECT_NEAR(base.emulator.commanded_velocity().linear_m_per_s, most.linear_mps, 0.005);
+  EXPECT_NEAR(base.emulator.commanded_velocity().angular_rad_per_s, 0.0, 0.02);
+}
+
 /// A press straight ahead, which its `bumpers` show, stops the base: it may drive back but not on.
 template <typename OnLine>
 void back_off_from_a_bump(OnLine& base, unsigned bumpers) {

@@ -20,9 +20,9 @@ namespace topogeo::devices {
 
 class BaseDriver : public SerialDriver {
  public:
-  /// Drives with these velocities (cut down to the limits) until `valid_until_ns` or for
-  /// settings.command_timeout_s, whichever ends first, then halts. False if the command is refused,
-  /// see BaseStatus::commands_taken. Both 0 halts and is never refused. Throws
+  /// Drives with these velocities (on the same arc, within the limits) until `valid_until_ns` or
+  /// for settings.command_timeout_s, whichever ends first, then halts. False if the command is
+  /// refused, see BaseStatus::commands_taken. Both 0 halts and is never refused. Throws
   /// std::invalid_argument for velocities that are not finite.
   virtual bool command(double linear_mps, double angular_radps, std::int64_t valid_until_ns,
                        std::int64_t now_ns) = 0;
