@@ -187,11 +187,7 @@ devices::BaseVelocity BaseChannel::guarded(const devices::BaseVelocity& wanted,
 
 geometry::Velocity BaseChannel::drivable(const geometry::Velocity& asked) {
   if (minimum_radius_m_ == 0.0) return asked;
-  // The driver keeps the largest speed, which would make an arc tighter.
-  const double fastest = driver_->limits().linear_mps;
-  const geometry::Velocity possible = geometry::drivable(
-      {std::clamp(asked.linear_m_per_s, -fastest, fastest), asked.angular_rad_per_s},
-      minimum_radius_m_);
+  const geometry::Velocity possible = geometry::drivable(asked, minimum_radius_m_);
   constexpr double kRounding_rad_s = 0.01;
   const bool too_tight =
       std::fabs(possible.angular_rad_per_s - asked.angular_rad_per_s) > kRounding_rad_s;
