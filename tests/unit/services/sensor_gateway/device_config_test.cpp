@@ -135,8 +135,8 @@ base:
 }
 
 TEST(DeviceConfig, BodySensorsAreThereWhereTheFileSaysSo) {
-  EXPECT_FALSE(config_of("base.port: /dev/b\n").body_sensors);
-  EXPECT_TRUE(config_of("base.port: /dev/b\nbody.sensors: b21\n").body_sensors);
+  EXPECT_EQ(config_of("base.port: /dev/b\n").body_sensors, BodySensorKind::kNone);
+  EXPECT_EQ(config_of("base.port: /dev/b\nbody.sensors: b21\n").body_sensors, BodySensorKind::kB21);
 }
 
 TEST(DeviceConfig, PrintedFileReadsBackToTheSame) {
