@@ -115,7 +115,7 @@ TEST_P(EachBaseModel, StopsWhenTheDriverIsFrozen) {
   if (!driver_->stop_bytes().empty()) {  // the gateway has a process that writes them
     pass(300 * kModelMs_ns);
     EXPECT_GT(emulator_->commanded_velocity().linear_m_per_s, 0.1) << "obeys its last speeds";
-    emulator_->receive(driver_->stop_bytes(), BaseSettings().line, line_.now_ns());
+    emulator_->receive(driver_->stop_bytes(), settings_of(GetParam()).line, line_.now_ns());
   }
   pass(2 * kModelSecond_ns);
   EXPECT_EQ(emulator_->commanded_velocity().linear_m_per_s, 0.0);
