@@ -114,6 +114,40 @@ void describe_pioneer(ConfigSchema& schema, DeviceFile::Base& base) {
              "RangeConvFactor of the maker's parameter file");
 }
 
+void describe_roboteq(ConfigSchema& schema, DeviceFile::Base& base) {
+  devices::RoboteqSettings& r = base.settings.roboteq;
+  schema.add("base.roboteq_ticks_per_m", &r.ticks_per_m, 1.0, 1e7, "1/m",
+             "encoder counts of a wheel of a roboteq per metre; measure it before the first drive");
+  schema.add("base.roboteq_track_m", &r.track_m, 0.01, 10.0, "m",
+             "distance between the wheels of a roboteq");
+  schema.add("base.roboteq_motor_turns_per_m", &r.motor_turns_per_m, 0.01, 1e4, "1/m",
+             "turns of a motor of a roboteq per metre");
+  schema.add("base.roboteq_full_rpm", &r.full_rpm, 0.0, 1e5, "1/min",
+             "a roboteq gets shares of this speed (!G), its MXRPM; 0: turns a minute (!S)");
+  schema.add("base.roboteq_left_channel", &r.left_channel, 1U, 2U, "",
+             "channel of the left motor of a roboteq; the right one is the other");
+  schema.add("base.roboteq_left_reversed", &r.left_reversed,
+             "the left motor of a roboteq turns backwards when the robot drives ahead");
+  schema.add("base.roboteq_right_reversed", &r.right_reversed, "the same for the right motor");
+}
+
+void describe_vesc(ConfigSchema& schema, DeviceFile::Base& base) {
+  devices::VescSettings& v = base.settings.vesc;
+  schema.add("base.vesc_pole_pairs", &v.pole_pairs, 1U, 1000U, "",
+             "pairs of poles of a motor of a vesc");
+  schema.add("base.vesc_motor_turns_per_m", &v.motor_turns_per_m, 0.01, 1e4, "1/m",
+             "turns of a motor of a vesc per metre; measure it before the first drive");
+  schema.add("base.vesc_track_m", &v.track_m, 0.01, 10.0, "m",
+             "distance between the wheels of a vesc");
+  schema.add("base.vesc_can_id", &v.can_id, 0U, 253U, "",
+             "number of the second vesc on the CAN bus of the one at the port");
+  schema.add("base.vesc_port_is_right", &v.port_is_right,
+             "the vesc at the port drives the right wheel; false: the left one");
+  schema.add("base.vesc_left_reversed", &v.left_reversed,
+             "the left motor of a vesc turns backwards when the robot drives ahead");
+  schema.add("base.vesc_right_reversed", &v.right_reversed, "the same for the right motor");
+}
+
 void describe_base_motion(ConfigSchema& schema, DeviceFile::Base& base) {
   devices::BaseSettings& s = base.settings;
   schema.add("base.largest_linear_mps", &s.limits.linear_mps, 0.01, 2.0, "m/s",
@@ -162,10 +196,10 @@ void describe_base_states(ConfigSchema& schema, DeviceFile::Base& base) {
              "the same for rotation");
   schema.add("base.battery_period_s", &s.battery_period_s, 1.0, 3600.0, "s",
              "time between two requests for the voltage");
-  schema.add(
-      "base.battery_low_v", &base.battery_low_v, 0.0, 100.0, "V",
-      "the battery is low below this voltage; 0: that of the model: 44 for a B21, 13 for a "
-      "create2 (a guess), 14 for a kobuki, 11.75 for a pioneer, never for a microcontroller");
+  schema.add("base.battery_low_v", &base.battery_low_v, 0.0, 100.0, "V",
+             "the battery is low below this voltage; 0: that of the model: 44 for a B21, 13 for a "
+             "create2 (a guess), 14 for a kobuki, 11.75 for a pioneer, never for "
+             "the others");
 }
 
 }  // namespace
@@ -177,6 +211,8 @@ void describe_base(DeviceFile::Base& base, ConfigSchema& schema) {
   describe_create(schema, base);
   describe_kobuki(schema, base);
   describe_pioneer(schema, base);
+  describe_roboteq(schema, base);
+  describe_vesc(schema, base);
   describe_base_motion(schema, base);
   describe_base_states(schema, base);
 }

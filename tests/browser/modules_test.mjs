@@ -511,7 +511,7 @@ const kReasonSources = {
     "navigator_inputs", "pose_keeper", "route_driver", "route_keeper",
   ],
   "libs/planning/src": ["drawn_obstructions", "goal_planner", "goal_target", "outline_planner", "route_ends"],
-  "libs/devices/src": ["base_interlocks", "base_link", "base_status", "create_driver", "kobuki_driver", "pioneer_driver", "two_wheel_driver"],
+  "libs/devices/src": ["base_interlocks", "base_link", "base_status", "create_driver", "kobuki_driver", "pioneer_driver", "roboteq_driver", "two_wheel_driver", "vesc_driver"],
   "services/planner": ["answer"],
   "services/localizer": ["localizer_commands"],
   "services/map_store": ["archive_channel", "drawing_order"],

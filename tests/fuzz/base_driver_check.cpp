@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstdlib>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -11,6 +12,8 @@
 #include "topogeo/devices/create_protocol.hpp"
 #include "topogeo/devices/kobuki_protocol.hpp"
 #include "topogeo/devices/pioneer_protocol.hpp"
+#include "topogeo/devices/roboteq_protocol.hpp"
+#include "topogeo/devices/vesc_protocol.hpp"
 
 #include "base_drive.hpp"
 #include "checks.hpp"
@@ -119,15 +122,55 @@ void check_pioneer_bytes(Bytes bytes) {
   }
 }
 
+void check_roboteq_order(Bytes bytes) {
+  if (bytes.empty()) return;  // settings of the line
+  std::string lines(bytes.begin(), bytes.end());
+  require(lines.ends_with('\r'), "an order is whole");
+  if (lines.starts_with('\r')) lines.erase(0, 1);
+  for (std::size_t end = 0; (end = lines.find('\r')) != std::string::npos;
+       lines.erase(0, end + 1)) {
+    const auto order = devices::roboteq_order(lines.substr(0, end));
+    require(order.has_value(), "an order is known");
+    if (order->name != "S") continue;
+    constexpr double kRpmPerMps = 60.0 * devices::RoboteqSettings().motor_turns_per_m;
+    const devices::BaseLimits limits;
+    const double most_mps =
+        limits.linear_mps + 0.5 * devices::RoboteqSettings().track_m * limits.angular_radps;
+    require(std::abs(order->arguments.at(1)) <= 1.0 + kRpmPerMps * most_mps,
+            "the speed is within the limits");
+  }
+}
+
+void check_vesc_order(Bytes bytes) {
+  constexpr devices::VescSettings kVesc;
+  constexpr double kErpmPerMps = 60.0 * kVesc.pole_pairs * kVesc.motor_turns_per_m;
+  const devices::BaseLimits limits;
+  const double most_mps = limits.linear_mps + 0.5 * kVesc.track_m * limits.angular_radps;
+  devices::VescReader reader;
+  reader.push(bytes);
+  while (auto packet = reader.next()) {
+    if (packet->payload[0] == devices::vesc_command::kForward) {
+      packet->payload.erase(packet->payload.begin(), packet->payload.begin() + 2);
+    }
+    if (*packet == devices::vesc_get_values()) continue;
+    const auto erpm = devices::vesc_rpm(*packet);
+    require(erpm.has_value(), "an order is known");
+    require(std::abs(*erpm) <= 1.0 + kErpmPerMps * most_mps, "the speed is within the limits");
+  }
+  require(reader.counters() == devices::VescCounters(), "an order is whole");
+}
+
 struct FuzzedBase {
   std::string_view model;
   void (*check_bytes)(Bytes bytes);
   void (*check_order)(Bytes order);
 };
-constexpr std::array<FuzzedBase, 3> kFuzzedBases{
+constexpr std::array<FuzzedBase, 5> kFuzzedBases{
     {{"create2", check_decoder<devices::CreateDecoder>, check_create_order},
      {"kobuki", check_decoder<devices::KobukiDecoder>, check_kobuki_order},
-     {"pioneer", check_pioneer_bytes, check_pioneer_order}}};
+     {"pioneer", check_pioneer_bytes, check_pioneer_order},
+     {"roboteq", check_decoder<devices::RoboteqDecoder>, check_roboteq_order},
+     {"vesc", check_decoder<devices::VescReader>, check_vesc_order}}};
 
 std::size_t drive(const FuzzedBase& base, Bytes bytes) {
   devices::BaseSettings settings;

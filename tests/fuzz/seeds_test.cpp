@@ -122,6 +122,12 @@ TEST(FuzzSeeds, ReachTheReports) {
   EXPECT_EQ(check_base_driver(content(seeds("base_driver") / "pioneer_drive")), 39U);
   EXPECT_GT(check_base_driver(content(seeds("base_driver") / "pioneer_stops")), 20U);
   EXPECT_EQ(check_base_driver(content(seeds("base_driver") / "pioneer_damaged")), 0U);
+  EXPECT_EQ(check_base_driver(content(seeds("base_driver") / "roboteq_drive")), 39U);
+  EXPECT_EQ(check_base_driver(content(seeds("base_driver") / "roboteq_stops")), 39U);
+  EXPECT_EQ(check_base_driver(content(seeds("base_driver") / "roboteq_damaged")), 0U);
+  EXPECT_EQ(check_base_driver(content(seeds("base_driver") / "vesc_drive")), 39U);
+  EXPECT_EQ(check_base_driver(content(seeds("base_driver") / "vesc_stops")), 39U);
+  EXPECT_EQ(check_base_driver(content(seeds("base_driver") / "vesc_damaged")), 0U);
 }
 
 TEST(FuzzSeeds, ReachTheTelegrams) {

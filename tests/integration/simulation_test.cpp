@@ -66,7 +66,8 @@ TEST_P(EachSimulatedBase, DrivesTheTourThroughSerialPortsAndMapsIt) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OneOfEachOtherFamily, EachSimulatedBase,
-                         testing::Values("microcontroller", "create2", "kobuki", "pioneer"),
+                         testing::Values("microcontroller", "create2", "kobuki", "pioneer",
+                                         "roboteq", "vesc"),
                          [](const auto& base) { return base.param; });
 
 TEST_P(EachSimulatedLaser, DrivesTheTourThroughSerialPortsAndMapsIt) {

@@ -8,8 +8,10 @@
 #include "topogeo/devices/create_driver.hpp"
 #include "topogeo/devices/kobuki_driver.hpp"
 #include "topogeo/devices/pioneer_driver.hpp"
+#include "topogeo/devices/roboteq_driver.hpp"
 #include "topogeo/devices/rwi_driver.hpp"
 #include "topogeo/devices/text_base_driver.hpp"
+#include "topogeo/devices/vesc_driver.hpp"
 
 namespace topogeo::devices {
 namespace {
@@ -32,6 +34,14 @@ std::unique_ptr<BaseDriver> make_kobuki(const BaseSettings& settings) {
 
 std::unique_ptr<BaseDriver> make_pioneer(const BaseSettings& settings) {
   return std::make_unique<PioneerDriver>(settings);
+}
+
+std::unique_ptr<BaseDriver> make_roboteq(const BaseSettings& settings) {
+  return std::make_unique<RoboteqDriver>(settings);
+}
+
+std::unique_ptr<BaseDriver> make_vesc(const BaseSettings& settings) {
+  return std::make_unique<VescDriver>(settings);
 }
 
 #define TOPOGEO_BASE(family, name, baud, battery_low_v, title) \

@@ -55,6 +55,12 @@ void check(const BaseSettings& settings) {
   in_range("pioneer.units_per_m", settings.pioneer.units_per_m, 0, 1e6);
   in_range("pioneer.units_per_turn", settings.pioneer.units_per_turn, 0, 1e6);
   in_range("pioneer.sonar_units_per_m", settings.pioneer.sonar_units_per_m, 0, 1e6);
+  in_range("roboteq.motor_turns_per_m", settings.roboteq.motor_turns_per_m, 0, 1e6);
+  in_range("roboteq.full_rpm", settings.roboteq.full_rpm, -1e-9, 1e5);
+  in_range("roboteq.left_channel", settings.roboteq.left_channel, 0, 2);
+  in_range("vesc.pole_pairs", settings.vesc.pole_pairs, 0, 1000);
+  in_range("vesc.motor_turns_per_m", settings.vesc.motor_turns_per_m, 0, 1e4);
+  in_range("vesc.can_id", settings.vesc.can_id, -1, 253);
   if ((settings.report_mask & kNeededFields) != kNeededFields) {
     throw std::invalid_argument("base settings: report_mask is " +
                                 std::to_string(settings.report_mask) + ", expected all bits of " +

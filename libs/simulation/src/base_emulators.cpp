@@ -5,7 +5,9 @@
 #include "topogeo/simulation/kobuki_emulator.hpp"
 #include "topogeo/simulation/mcp_emulator.hpp"
 #include "topogeo/simulation/pioneer_emulator.hpp"
+#include "topogeo/simulation/roboteq_emulator.hpp"
 #include "topogeo/simulation/text_base_emulator.hpp"
+#include "topogeo/simulation/vesc_emulator.hpp"
 
 namespace topogeo::simulation {
 namespace {
@@ -46,6 +48,16 @@ std::unique_ptr<BaseEmulator> emulate_kobuki(const BaseEmulatorSettings& setting
 std::unique_ptr<BaseEmulator> emulate_pioneer(const BaseEmulatorSettings& settings,
                                               std::int64_t now_ns) {
   return std::make_unique<PioneerEmulator>(on_line<PioneerEmulatorSettings>(settings), now_ns);
+}
+
+std::unique_ptr<BaseEmulator> emulate_roboteq(const BaseEmulatorSettings& settings,
+                                              std::int64_t now_ns) {
+  return std::make_unique<RoboteqEmulator>(on_line<RoboteqEmulatorSettings>(settings), now_ns);
+}
+
+std::unique_ptr<BaseEmulator> emulate_vesc(const BaseEmulatorSettings& settings,
+                                           std::int64_t now_ns) {
+  return std::make_unique<VescEmulator>(on_line<VescEmulatorSettings>(settings), now_ns);
 }
 
 using MakeBaseEmulator = std::unique_ptr<BaseEmulator> (*)(const BaseEmulatorSettings&,

@@ -255,6 +255,8 @@ export const spanish_reasons: [string, string][] = [
   ["the drive unit does not go to its safe mode", "la tracción no pasa a su modo seguro"],
   ["the motors were switched off; release them", "se han apagado los motores; libérelos"],
   ["a wheel is blocked: free it and release it", "una rueda está bloqueada: desbloquéela y libérela"],
+  ["the motor controller reports a fault; release it",
+    "el controlador de motores indica un fallo; libérelo"],
   ["the motors do not switch on", "los motores no se encienden"],
   ["the port is closed", "el puerto está cerrado"],
   ["no answer yet", "aún sin respuesta"],

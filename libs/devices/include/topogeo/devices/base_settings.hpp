@@ -9,8 +9,10 @@
 #include "topogeo/devices/mcp_binary.hpp"
 #include "topogeo/devices/mcp_units.hpp"
 #include "topogeo/devices/pioneer_settings.hpp"
+#include "topogeo/devices/roboteq_settings.hpp"
 #include "topogeo/devices/serial_driver.hpp"
 #include "topogeo/devices/text_base_settings.hpp"
+#include "topogeo/devices/vesc_settings.hpp"
 #include "topogeo/geometry/reaction_times.hpp"
 
 namespace topogeo::devices {
@@ -44,6 +46,8 @@ struct BaseSettings {
   CreateSettings create{};  ///< of a Create 2
   KobukiSettings kobuki{};
   PioneerSettings pioneer{};
+  RoboteqSettings roboteq{};
+  VescSettings vesc{};
   /// BaseDriver::set_limits cannot exceed them.
   BaseLimits limits{};
 
