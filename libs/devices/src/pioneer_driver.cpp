@@ -24,7 +24,7 @@ constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr WheelUnits kPioneerWheels{
     .ticks_per_m = 100'000.0, .track_m = 0.33, .time_unit_ns = kPioneerTimeUnit_ns};
 
-/// As an argument of a command.
+/// The argument of a command for this value.
 int pioneer_argument(double value) {
   constexpr double kMost = std::numeric_limits<std::int16_t>::max();
   return static_cast<int>(std::lround(std::clamp(value, -kMost, kMost)));

@@ -149,9 +149,9 @@ void check_rules(const storage::MapDrawing& drawing) {
   });
   const std::size_t rules = drawing.lines.size() + static_cast<std::size_t>(zones);
   if (rules <= msg::kMaxRules) return;
-  throw std::invalid_argument(fmt::format(
-      "{} zones with a rule, walls, openings and doors over a map, expected at most {}",
-      rules, msg::kMaxRules));
+  throw std::invalid_argument(
+      fmt::format("{} zones with a rule, walls, openings and doors over a map, expected at most {}",
+                  rules, msg::kMaxRules));
 }
 
 }  // namespace topogeo::service

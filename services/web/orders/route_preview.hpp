@@ -15,8 +15,8 @@
 namespace topogeo::web {
 
 /// Route from the robot through all `goals_m` in order (map frame; at least one): length, time at
-/// the speeds of `navigator` and of slow zones, smallest clearance; or the reason why there is none.
-/// Throws std::invalid_argument like `check` of the settings.
+/// the speeds of `navigator` and of slow zones, smallest clearance; or the reason why there is
+/// none. Throws std::invalid_argument like `check` of the settings.
 Answer preview_route(const planning::PlanningMaps& maps, const geometry::Pose2& T_map_robot,
                      const std::vector<Eigen::Vector2d>& goals_m,
                      const planning::GoalPlannerConfig& config,

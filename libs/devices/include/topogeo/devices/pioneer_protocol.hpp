@@ -95,7 +95,7 @@ inline constexpr unsigned kPioneerPositionBits = 15;
 
 /// Empty for another packet, and for one whose length does not fit its number of echoes.
 [[nodiscard]] std::optional<PioneerReport> pioneer_report(const PioneerPacket& packet);
-/// As the server sends it.
+/// The packet that the server sends for a report.
 [[nodiscard]] PioneerPacket to_packet(const PioneerReport& report);
 /// Bumpers of a report: bits 0 to 6 of the first group, 7 to 13 of the second one.
 [[nodiscard]] std::uint16_t pioneer_bumpers(const PioneerReport& report);

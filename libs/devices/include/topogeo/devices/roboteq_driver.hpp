@@ -41,7 +41,7 @@ class RoboteqDriver final : public TwoWheelDriver {
   [[nodiscard]] std::int32_t watchdog_ms() const;
   [[nodiscard]] std::string watchdog_line() const;
   void write_text(const std::string& text);
-  /// Of the controller, from 0: of the left and the right wheel.
+  /// The controller's channels of the left and the right wheel, from 0.
   [[nodiscard]] std::array<std::size_t, 2> channels() const;
 
   RoboteqDecoder decoder_;

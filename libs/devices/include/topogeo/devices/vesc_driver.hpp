@@ -35,7 +35,7 @@ class VescDriver final : public TwoWheelDriver {
   void obey(const VescValues& values, std::int64_t now_ns);
   /// Asks both; older answers count no more.
   void poll();
-  /// To the controller of a wheel, 0: left.
+  /// The bytes that reach the controller of a wheel (0: left, 1: right).
   [[nodiscard]] std::vector<std::uint8_t> addressed(std::size_t wheel,
                                                     const VescPacket& packet) const;
   [[nodiscard]] std::size_t wheel_at_port() const;

@@ -14,9 +14,9 @@ namespace topogeo::devices {
 /// Numbers of the commands, which their answers repeat.
 namespace vesc_command {
 inline constexpr std::uint8_t kSetRpm = 8;  ///< electrical turns a minute
-/// To the controller of this number on the CAN bus: the rest is its command.
+/// Passes the rest, a command, on to the controller of this number on the CAN bus.
 inline constexpr std::uint8_t kForward = 34;
-/// Those values whose bits are set in a mask of four bytes, which the answer repeats.
+/// Asks for the values whose bits are set in a mask of four bytes, which the answer repeats.
 inline constexpr std::uint8_t kGetSelected = 50;
 }  // namespace vesc_command
 

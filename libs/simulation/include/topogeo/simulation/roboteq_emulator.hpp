@@ -52,8 +52,9 @@ class RoboteqEmulator final : public TwoWheelEmulator {
   void answer(const devices::RoboteqOrder& order, std::int64_t now_ns);
   void drive();
   [[nodiscard]] std::int64_t expires_ns() const;
-  /// Of a wheel: its channel from 0, and whether it runs the other way round.
+  /// Channel of a wheel, from 0.
   [[nodiscard]] std::size_t channel(std::size_t wheel) const;
+  /// -1 for a wheel whose motor is mounted the other way round, else 1.
   [[nodiscard]] int direction(std::size_t wheel) const;
 
   RoboteqEmulatorSettings roboteq_;
