@@ -148,8 +148,7 @@ TEST_P(EachBaseOnAPort, NeverMoves) {
     if (!speaks) {
       // It obeys no question at any rate. An RWI base shows its own rate by its echo, and so does a
       // Roboteq.
-      const bool echoes =
-          (model.family == "rwi" || model.family == "roboteq") && baud != 57'600;
+      const bool echoes = (model.family == "rwi" || model.family == "roboteq") && baud != 57'600;
       EXPECT_EQ(port.why_none(),
                 !echoes ? "sends nothing and answers no question"
                         : "echoes what it receives, as an RWI B21 does (base.model: rwi_b21)");
