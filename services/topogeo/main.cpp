@@ -23,8 +23,8 @@ int run(int argc, const char* const* argv) {
       "Maps indoor places from laser scans and plans routes through them.\n"
       "\n"
       "Start here:\n"
-      "  topogeo demo --out demo                 map a made floor, compare it with the truth\n"
-      "  topogeo check-log LOG                   what is in a log or recording, and what is wrong\n"
+      "  topogeo demo --out demo                 map a synthetic floor, compare it with the truth\n"
+      "  topogeo check-log LOG                   content and faults of a log or recording\n"
       "  topogeo map LOG --out map               map it; map/map.png is the picture\n"
       "  topogeo view map                        look at the map in the browser\n"
       "  topogeo run --sim WORLD --out map       drive a simulated robot, all services at work\n",

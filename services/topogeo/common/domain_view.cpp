@@ -59,7 +59,7 @@ void add_view_options(command_line::Command& app, DomainView& view) {
   add_domain_options(app, view);
   add_watch_flags(app, view.watch, view.once, "");
   app.add_option("--wait-seconds", view.wait_s,
-                 "how long to wait for the first one, and for late ones")
+                 "longest wait for the first service, and for late ones")
       ->check(command_line::range(0.1, kLongestWait_s))
       ->capture_default_str();
 }

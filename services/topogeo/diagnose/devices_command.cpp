@@ -158,7 +158,7 @@ void add_devices_command(command_line::Command& app, int& exit_code) {
           "ports to search; tcp://HOST for a laser on the network (default: every USB port "
           "and UART)")
       ->type_name("PORT");
-  command->add_flag("--listen-only", options->listen_only, "ask no device anything");
+  command->add_flag("--listen-only", options->listen_only, "send no requests to devices");
   command
       ->add_option("--write", options->write,
                    "write the devices file for --devices of other commands")

@@ -219,7 +219,7 @@ int send_base_command(BaseRequest request) {
 }
 
 void add_base_options(command_line::Command& app, BaseRequest& request) {
-  add_robot_option(app, request.robot_id, "whose base");
+  add_robot_option(app, request.robot_id, "robot of the base");
   add_domain_options(app, request.view);
   app.add_option("--wait-seconds", request.wait_s, "how long to wait for the base")
       ->check(command_line::range(0.1, kLongestWait_s))

@@ -103,7 +103,7 @@ void add_draw_command(command_line::Command& app, int& exit_code) {
       ->add_option("--if-version", options->version,
                    "refuse the file unless this is still the version of the drawing")
       ->needs(command->get_option("file"));
-  add_robot_option(*command, options->robot_id, "whose live map");
+  add_robot_option(*command, options->robot_id, "robot of the live map");
   add_domain_options(*command, options->view);
   command->add_option("--wait-seconds", options->wait_s, "how long to wait for the map store")
       ->check(command_line::range(0.1, kLongestWait_s))

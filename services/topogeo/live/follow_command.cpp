@@ -201,7 +201,7 @@ void add_follow_command(command_line::Command& app, int& exit_code) {
   command_line::Command* command =
       app.add_subcommand("follow", "Show the map of a robot and each change of it");
   auto request = std::make_shared<FollowRequest>();
-  add_robot_option(*command, request->robot_id, "whose map");
+  add_robot_option(*command, request->robot_id, "robot of the map");
   add_domain_options(*command, request->view);
   command->add_flag("--once", request->once, "show the current map and exit");
   command->add_flag("--json", request->json, "for programs: one JSON object on each line");

@@ -38,7 +38,7 @@ int send_localizer_command(const LocalizerRequest& request,
 }
 
 void add_request_options(command_line::Command& app, LocalizerRequest& request) {
-  add_robot_option(app, request.robot_id, "whose localizer");
+  add_robot_option(app, request.robot_id, "robot of the localizer");
   add_domain_options(app, request.view);
   app.add_option("--wait-seconds", request.wait_s, "how long to wait for the answer")
       ->check(command_line::range(0.1, kLongestWait_s))

@@ -81,7 +81,7 @@ void add_simulator_options(command_line::Command& app, SimulatorRequest& request
       ->required()
       ->type_name("FAULT")
       ->named_values(kFaults);
-  app.add_flag("--base", request.base, "the base has it");
+  app.add_flag("--base", request.base, "inject the fault into the base, not the laser");
   app.add_option("--seconds", request.duration_s, "how long, in the simulated world")
       ->check(command_line::range(0.01, 3600.0))
       ->capture_default_str();
@@ -91,7 +91,7 @@ void add_simulator_options(command_line::Command& app, SimulatorRequest& request
   app.add_option("--angular", request.angular_radps, "rad/s by joystick")
       ->check(command_line::range(-3.0, 3.0))
       ->capture_default_str();
-  add_robot_option(app, request.robot_id, "whose");
+  add_robot_option(app, request.robot_id, "robot of the simulator");
   add_domain_options(app, request.view);
 }
 
@@ -99,7 +99,7 @@ void add_simulator_options(command_line::Command& app, SimulatorRequest& request
 
 void add_simulator_command(command_line::Command& app, int& exit_code) {
   command_line::Command* command =
-      app.add_subcommand("simulator", "Make something go wrong in a running simulator");
+      app.add_subcommand("simulator", "Inject a fault into a running simulator");
   auto request = std::make_shared<SimulatorRequest>();
   add_simulator_options(*command, *request);
   command->callback([request, &exit_code] { exit_code = send_simulator_command(*request); });

@@ -145,7 +145,7 @@ int check_log(const LogRequest& request) {
 }  // namespace
 
 void add_check_log_command(command_line::Command& app, int& exit_code) {
-  command_line::Command* command = app.add_subcommand("check-log", "Find what is wrong with a log");
+  command_line::Command* command = app.add_subcommand("check-log", "List the faults of a log");
   auto request = std::make_shared<LogRequest>();
   constexpr double kMost = 1e6;
   command->add_option("log,--log", request->log, recording::kLogFormats)->required();

@@ -45,7 +45,7 @@ void add_record_command(command_line::Command& app, int& exit_code) {
       ->check(recording::check_log_name)
       ->required()
       ->type_name("FILE");
-  add_robot_option(*command, request->robot_id, "whose scans");
+  add_robot_option(*command, request->robot_id, "robot of the scans");
   command
       ->add_option("--laser", request->laser,
                    "mounting of the laser to write into the log, m and rad (default: 0,0,0)")

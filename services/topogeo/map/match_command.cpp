@@ -296,7 +296,7 @@ int match_stops(const MatchOptions& options) {
 
 void add_match_command(command_line::Command& app, int& exit_code) {
   command_line::Command* command = app.add_subcommand(
-      "match", "Show the search for the relative pose of two stops: what was searched and found");
+      "match", "Show the search for the relative pose of two stops, with its space and results");
   auto options = std::make_shared<MatchOptions>();
   command
       ->add_option("source", options->source,
@@ -309,11 +309,12 @@ void add_match_command(command_line::Command& app, int& exit_code) {
       ->type_name("I,J");
   command->add_option("--out", options->out, "picture to write: .png or .svg")->type_name("FILE");
   command->add_flag("--json", options->json, "print JSON");
-  command->add_option("--solutions", options->solutions, "how many to show; default: as configured")
+  command
+      ->add_option("--solutions", options->solutions, "solutions to show; default: as configured")
       ->check(command_line::range(1U, 40U))
       ->type_name("N");
   command_line::Option* prediction =
-      command->add_option("--prediction", options->prediction, "what predicts where the query is")
+      command->add_option("--prediction", options->prediction, "source of the predicted pose")
           ->check(command_line::one_of({"odometry", "map"}))
           ->capture_default_str();
   command

@@ -57,11 +57,11 @@ int explore(const ExploreOptions& options) {
 
 void add_explore_command(command_line::Command& app, int& exit_code) {
   command_line::Command* command = app.add_subcommand(
-      "explore", "Send a mapping robot everywhere that it can get to and has not seen");
+      "explore", "Send a mapping robot to every reachable place that it has not seen");
   auto options = std::make_shared<ExploreOptions>();
   command->add_option("--picture", options->picture, "draw map and path as .png or .svg at the end")
       ->type_name("FILE");
-  command->add_option("--config", options->config, "configuration; its section explorer counts")
+  command->add_option("--config", options->config, "configuration (YAML), for its explorer section")
       ->type_name("FILE");
   add_robot_options(*command, options->robot);
   command->footer(

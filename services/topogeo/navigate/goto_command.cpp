@@ -109,7 +109,7 @@ void add_goto_command(command_line::Command& app, int& exit_code) {
       app.add_subcommand("goto", "Send a robot to a place and watch it get there");
   auto options = std::make_shared<GotoOptions>();
   command_line::Option* target =
-      command->add_option("target", options->goal.target, "where to: a point, a node or a place")
+      command->add_option("target", options->goal.target, "goal: a point, a node or a place")
           ->type_name("PLACE|X,Y|#NODE");
   add_goal_options(*command, options->goal);
   command->add_flag("--no-wait", options->no_wait, "do not wait for the arrival");

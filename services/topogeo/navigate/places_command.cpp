@@ -277,7 +277,7 @@ void add_places_command(command_line::Command& app, int& exit_code) {
                    "configuration (YAML), for its hybrid_map section; files only")
       ->type_name("FILE");
   command->add_flag("--json", options->json, "for programs: places and zones");
-  add_robot_option(*command, options->robot_id, "whose live map");
+  add_robot_option(*command, options->robot_id, "robot of the live map");
   add_domain_options(*command, options->view);
   command->add_option("--wait-seconds", options->wait_s, "how long to wait for the live map")
       ->check(command_line::range(0.1, kLongestWait_s))

@@ -11,7 +11,7 @@
 namespace topogeo::cli {
 
 void add_robot_options(command_line::Command& app, RobotInDomain& robot) {
-  add_robot_option(app, robot.robot_id, "which robot");
+  add_robot_option(app, robot.robot_id, "name of the robot");
   add_domain_options(app, robot.view);
   app.add_option("--wait-seconds", robot.wait_s, "how long to wait for planner and navigator")
       ->check(command_line::range(0.1, kLongestWait_s))

@@ -49,7 +49,7 @@ int store_export(ExportOptions options) {
 
 void add_store_export_command(command_line::Command& store, int& exit_code) {
   command_line::Command* command =
-      store.add_subcommand("export", "Write a map in the form of another program");
+      store.add_subcommand("export", "Write a map in the format of another program");
   auto options = std::make_shared<ExportOptions>();
   command->add_option("file", options->file, "map file or database")->required()->type_name("FILE");
   const std::span<const exchange::MapFormat> formats = exchange::export_formats();

@@ -154,7 +154,7 @@ int store_import(const ImportOptions& options) {
 
 void add_store_import_command(command_line::Command& store, int& exit_code) {
   command_line::Command* command =
-      store.add_subcommand("import", "Make a map file of a file of another program");
+      store.add_subcommand("import", "Make a map file from a file of another program");
   auto options = std::make_shared<ImportOptions>();
   command->add_option("file", options->file, "file to read")->required()->type_name("FILE");
   const std::span<const exchange::MapFormat> formats = exchange::import_formats();

@@ -181,7 +181,7 @@ void add_store_inspect_commands(command_line::Command& store, int& exit_code) {
   check->callback([checked, &exit_code] { exit_code = store_check(*checked); });
 
   command_line::Command* repair =
-      store.add_subcommand("repair", "Save what can be read of a damaged map");
+      store.add_subcommand("repair", "Save the readable parts of a damaged map");
   auto damaged = std::make_shared<RepairOptions>();
   repair->add_option("file", damaged->file, "damaged map file or database")
       ->required()

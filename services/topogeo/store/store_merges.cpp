@@ -86,7 +86,7 @@ int answer_merge(const MergeRequest& request, bool accepted) {
 }
 
 void add_merge_options(command_line::Command& app, MergeRequest& request) {
-  add_robot_option(app, request.robot_id, "whose map it is");
+  add_robot_option(app, request.robot_id, "robot of the map");
   add_domain_options(app, request.view);
   app.add_option("--wait-seconds", request.wait_s, "how long to wait for the localizer")
       ->check(command_line::range(0.1, kLongestWait_s))

@@ -86,7 +86,7 @@ void add_web_command(command_line::Command& app, int&) {
   service::add_domain_option(*web, options->domain);
   web->add_option("--partition", options->partition, "only services in this partition; *: all")
       ->capture_default_str();
-  add_robot_option(*web, options->robot_id, "whose page");
+  add_robot_option(*web, options->robot_id, "robot of the page");
   service::add_map_option(*web, options->map_of);
   add_config_option(*web, options->config);
   web->footer("Prints the link of the operator and that of spectators, who may only watch.");
