@@ -56,7 +56,9 @@ bool LastGuard::repeats(const ScanPoints& scan) {
 
 bool LastGuard::sees(std::int64_t now_ns) const {
   if (!last_ || !scan_) return false;
-  return static_cast<double>(now_ns - scan_->stamp_ns) * kSecondsPerNs <= config_.oldest_scan_s;
+  const double age_s = static_cast<double>(now_ns - scan_->stamp_ns) * kSecondsPerNs;
+  // A stamp far ahead comes from a wrong clock, and the age of its scan is unknown.
+  return std::fabs(age_s) <= config_.oldest_scan_s;
 }
 
 std::vector<Eigen::Vector2d> LastGuard::points_now_m() const {

@@ -98,6 +98,14 @@ TEST(LastGuard, IsBlindWithoutAFreshScan) {
             Verdict::kAsWanted);
 }
 
+TEST(LastGuard, IsBlindWithAScanFromTheFuture) {
+  LastGuard guard = last_guard_seeing({{3.0, 0.0}});
+  guard.add(scan_at(kGuarded_ns + 100'000'000, {{3.0, 0.0}}));
+  EXPECT_EQ(guard.judge({0.1, 0.0}, kBrake, kGuarded_ns).verdict, Verdict::kAsWanted);
+  guard.add(scan_at(kGuarded_ns + 60'000'000'000, {{3.0, 0.0}}));
+  EXPECT_EQ(guard.judge({0.1, 0.0}, kBrake, kGuarded_ns).verdict, Verdict::kBlind);
+}
+
 TEST(LastGuard, TakesNothingFromALaserThatHangs) {
   LastGuard guard = last_guard_seeing({{3.0, 0.0}});
   for (int i = 1; i <= 10; ++i) {
