@@ -77,7 +77,7 @@ Task draw_task(const world::World& world, std::uint64_t seed) {
   const auto draw = [&]() -> Eigen::Vector2d {
     while (true) {
       const std::size_t index = random.below(space.frame().size());
-      const Eigen::Vector2d at_m = space.frame().center_m(space.frame().cell_at(index));
+      Eigen::Vector2d at_m = space.frame().center_m(space.frame().cell_at(index));
       if (space.passable(index) && world::clearance_m(world, at_m) >= kClearance_m) return at_m;
     }
   };

@@ -36,8 +36,8 @@ std::array<std::size_t, 2> RoboteqDriver::channels() const {
 void RoboteqDriver::ask(unsigned /*attempt*/, std::int64_t /*now_ns*/) {
   same_flags_ = 0;
   flags_ = 0;
-  write_text("\r" + speed_lines({0.0, 0.0}) + to_line({'^', "ECHOF", {1}}) + watchdog_line() +
-             to_line({'~', "RWD"}));
+  write_text("\r" + speed_lines({0.0, 0.0}) + roboteq_line({'^', "ECHOF", {1}}) + watchdog_line() +
+             roboteq_line({'~', "RWD"}));
 }
 
 std::int32_t RoboteqDriver::watchdog_ms() const {
@@ -45,7 +45,7 @@ std::int32_t RoboteqDriver::watchdog_ms() const {
 }
 
 std::string RoboteqDriver::watchdog_line() const {
-  return to_line({'^', "RWD", {watchdog_ms()}});
+  return roboteq_line({'^', "RWD", {watchdog_ms()}});
 }
 
 std::string RoboteqDriver::speed_lines(const std::array<double, 2>& wheels_mps) const {
@@ -60,7 +60,8 @@ std::string RoboteqDriver::speed_lines(const std::array<double, 2>& wheels_mps) 
     const bool share = roboteq.full_rpm > 0.0;
     const double most = share ? kFullCommand : std::numeric_limits<std::int16_t>::max();
     const double value = share ? kFullCommand * rpm / roboteq.full_rpm : rpm;
-    lines += to_line({'!',
+    lines +=
+        roboteq_line({'!',
                       share ? "G" : "S",
                       {static_cast<std::int32_t>(channels()[i] + 1U),
                        static_cast<std::int32_t>(std::lround(std::clamp(value, -most, most)))}});
@@ -71,9 +72,9 @@ std::string RoboteqDriver::speed_lines(const std::array<double, 2>& wheels_mps) 
 void RoboteqDriver::write_speeds(const BaseVelocity& velocity) {
   const double side_mps = 0.5 * units().track_m * velocity.angular_radps;
   std::string text = speed_lines({velocity.linear_mps - side_mps, velocity.linear_mps + side_mps});
-  for (const char* const query : {"C", "FF", "FF", "C"}) text += to_line({'?', query});
+  for (const char* const query : {"C", "FF", "FF", "C"}) text += roboteq_line({'?', query});
   // A controller that restarted in a moment has its stored watchdog again.
-  if (polls_++ % kPollsPerVoltage == 0) text += to_line({'?', "V"}) + watchdog_line();
+  if (polls_++ % kPollsPerVoltage == 0) text += roboteq_line({'?', "V"}) + watchdog_line();
   write_text(text);
 }
 
@@ -139,7 +140,7 @@ RoboteqDriver::Signs RoboteqDriver::signs() const {
 void RoboteqDriver::released(std::int64_t /*now_ns*/) {
   flags_ = 0;  // until they come again
   same_flags_ = 0;
-  if (runs()) write_text(to_line({'!', "MG"}));
+  if (runs()) write_text(roboteq_line({'!', "MG"}));
 }
 
 void RoboteqDriver::count_drops(McpDrops& drops) const {

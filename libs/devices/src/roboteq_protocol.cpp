@@ -96,7 +96,7 @@ void RoboteqDecoder::clear() {
   long_ = false;
 }
 
-std::string to_line(const RoboteqOrder& order) {
+std::string roboteq_line(const RoboteqOrder& order) {
   std::string line = order.kind + order.name;
   for (const std::int32_t argument : order.arguments) line += " " + std::to_string(argument);
   return line + "\r";

@@ -54,9 +54,9 @@ TEST(RoboteqProtocol, OtherLinesAreDropped) {
 }
 
 TEST(RoboteqProtocol, CommandsAreThoseOfTheManual) {
-  EXPECT_EQ(to_line(RoboteqOrder{'!', "S", {2, -300}}), "!S 2 -300\r");
-  EXPECT_EQ(to_line(RoboteqOrder{'^', "RWD", {2000}}), "^RWD 2000\r");
-  EXPECT_EQ(to_line(RoboteqOrder{'?', "C"}), "?C\r");
+  EXPECT_EQ(roboteq_line({'!', "S", {2, -300}}), "!S 2 -300\r");
+  EXPECT_EQ(roboteq_line({'^', "RWD", {2000}}), "^RWD 2000\r");
+  EXPECT_EQ(roboteq_line({'?', "C"}), "?C\r");
   EXPECT_EQ(roboteq_order("!S 2 -300"), (RoboteqOrder{'!', "S", {2, -300}}));
   EXPECT_EQ(roboteq_order("~RWD"), (RoboteqOrder{'~', "RWD"}));
   for (const char* line : {"", "S 1 2", "!", "!1", "!S1", "!S 1 ", "!S  1", "!S 1 x", "?c"}) {

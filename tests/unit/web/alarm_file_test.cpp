@@ -27,7 +27,7 @@ class AlarmFileTest : public testing::Test {
  protected:
   /// The file as a service that was killed at this moment leaves it.
   [[nodiscard]] std::filesystem::path as_left() const {
-    const std::filesystem::path copy = folder_.path() / "left.jsonl";
+    std::filesystem::path copy = folder_.path() / "left.jsonl";
     std::filesystem::copy_file(file_, copy, std::filesystem::copy_options::overwrite_existing);
     return copy;
   }

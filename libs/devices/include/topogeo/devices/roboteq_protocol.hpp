@@ -54,7 +54,7 @@ struct RoboteqOrder {
   bool operator==(const RoboteqOrder&) const = default;
 };
 /// With its carriage return.
-[[nodiscard]] std::string to_line(const RoboteqOrder& order);
+[[nodiscard]] std::string roboteq_line(const RoboteqOrder& order);
 /// A line without its end; empty for another one.
 [[nodiscard]] std::optional<RoboteqOrder> roboteq_order(std::string_view line);
 
