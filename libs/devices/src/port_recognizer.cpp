@@ -78,12 +78,13 @@ std::string_view scip_model(std::string_view product) {
 }
 
 std::string_view cola_model(std::string_view name) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kNames{
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kNames{
       {{"TiM55", "sick_tim551"},
        {"TiM7", "sick_tim7xx"},
        {"TiM", "sick_tim5xx"},
        {"LMS1", "sick_lms1xx"},
-       {"LMS5", "sick_lms5xx"}}};
+       {"LMS5", "sick_lms5xx"},
+       {"LRS4", "sick_lrs4xxx"}}};
   for (const auto& [part, model] : kNames) {
     if (name.find(part) != std::string_view::npos) return model;
   }
@@ -91,8 +92,12 @@ std::string_view cola_model(std::string_view name) {
 }
 
 std::string_view cola_model(std::size_t beams) {
-  constexpr std::array<std::pair<std::size_t, std::string_view>, 4> kBeams{
-      {{271, "sick_tim551"}, {811, "sick_tim5xx"}, {541, "sick_lms1xx"}, {381, "sick_lms5xx"}}};
+  constexpr std::array<std::pair<std::size_t, std::string_view>, 5> kBeams{
+      {{271, "sick_tim551"},
+       {811, "sick_tim5xx"},
+       {541, "sick_lms1xx"},
+       {381, "sick_lms5xx"},
+       {1500, "sick_lrs4xxx"}}};
   for (const auto& [count, model] : kBeams) {
     if (count == beams) return model;
   }

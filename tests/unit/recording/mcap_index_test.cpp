@@ -63,11 +63,12 @@ TEST_F(McapIndex, LeadsPastChunksOfOtherTopics) {
   ASSERT_EQ(all.size(), std::size_t{kScans});
   // Unread data is not checked.
   expect_same_scans(read_scans(changed(damage_maps)), all);
-  const auto without = read_scans(changed([](std::string& bytes) {
-    damage_maps(bytes);
-    forget_checksum(bytes);
-  }));
-  EXPECT_EQ(without.size(), std::size_t{10}) << "what follows a damaged chunk is not trusted";
+  // Without an index, only the damaged chunks are lost, which hold no scans.
+  expect_same_scans(read_scans(changed([](std::string& bytes) {
+                      damage_maps(bytes);
+                      forget_checksum(bytes);
+                    })),
+                    all);
 }
 
 TEST_F(McapIndex, IsNotNeeded) {
